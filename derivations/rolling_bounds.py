@@ -11,15 +11,17 @@ torque grow with the supply rate, the rate falls and the room grows with T_F, an
 that takes no friction below 0 differs from one that does by bounded numbers.
 """
 
+from functools import partial
+
 import sympy as sp
 
 from derivations import adhesion
 from derivations import brake_actuator as brake
-from derivations.notation import numerator
+from derivations.notation import described, numerator
 
 # --- slip and friction along the motion: s, v and the torque over the time t ----------------------------------------
-_s, _v, _R, _g, _kappa, _s_r = sp.symbols("s v R g kappa s_r", positive=True)
-_q, _T, _T_rate, _damped = sp.symbols("q T T_rate q_d", real=True)
+_s, _v, _R, _g, _kappa, _s_r = sp.symbols("slip speed wheel_radius g kappa s_r", positive=True)
+_q, _T, _T_rate, _damped = sp.symbols("growth T T_rate damping", real=True)
 _f, _drag = (sp.Function(name, real=True)(_s, _v) for name in ("f", "drag"))
 _lost = _kappa * _f + _drag  # by the reference
 _aside = (_s_r - _s) / (1 - _s_r)
@@ -57,7 +59,9 @@ steepness_rate_residual = sp.expand(
     _rate(_S) - (sp.diff(_S, _s) * _slip_rate - _slowing * _v * sp.diff(_S, _v))
 )
 # Where S does not rise with the slip, S' <= L S_l, the level l = (1 + kappa) S q has l' <= (1 + kappa) S (B - l).
-_steep, _S_l, _L, _Ph, _drag_rate = sp.symbols("S S_l L Ph drag_rate", real=True)
+_steep, _S_l, _L, _Ph, _drag_rate = sp.symbols(
+    "steepness steepness_rise slowing at_fixed_slip drag_rate", real=True
+)
 _q_rate = (
     _g * _T_rate - (1 + _kappa * (1 + _aside)) * (_steep * _q + _Ph) - (1 + _aside) * _drag_rate + _L * _q
 )
@@ -73,7 +77,9 @@ level_residual = numerator(
 )
 
 # --- Polach's curve: f = grip phi S_z(B s/phi) less q_d times the wheel speed ---------------------------------------
-_grip, _B, _A, _D, _kA, _kS = sp.symbols("grip B A D k_A k_S", positive=True)
+_grip, _B, _A, _D, _kA, _kS = sp.symbols(
+    "grip gradient_of_slip friction_ratio friction_decay adhesion_reduction slip_reduction", positive=True
+)
 _z = sp.Symbol("z", positive=True)
 _shape = (2 / sp.pi * adhesion.shape).subs({adhesion.gradient: _z, adhesion.kA: _kA, adhesion.kS: _kS})
 _u = _s * _v
@@ -112,13 +118,13 @@ bend_residual = sp.simplify(
     * _z
     * (_kA**3 * (3 - (_kA * _z) ** 2) / (1 + (_kA * _z) ** 2) ** 3 + _kS**3 / (1 + (_kS * _z) ** 2) ** 2)
 )
-# For k_A = 3 k_S, all rails that are shipped, -S_z'' is positive: with t = (k_S z)^2 it is z times this over a square.
+# For k_A = 3 k_S, as on wet and slippery rails, -S_z'' is positive: with t = (k_S z)^2 it goes with this.
 _t = sp.Symbol("t", positive=True)
 _of_t = 27 * (3 - 9 * _t) * (1 + _t) ** 2 + (1 + 9 * _t) ** 3
 concave_residual = sp.expand(_of_t - (64 + 162 * (3 * _t + 1) * (_t - sp.Rational(1, 3)) ** 2))
 
 # --- a pulse of the length x over T_F: what is in its mean, and what a rising supply adds ---------------------------
-_x, _y, _time, _l, _eta = sp.symbols("x y t l eta", positive=True)
+_x, _y, _time, _l, _eta = sp.symbols("x y t pulse over_time", positive=True)
 share = 1 / (1 - sp.exp(-_x)) - 1 / _x  # of an exponential change in the mean over its pulse
 _mean = sp.integrate(1 - sp.exp(-_time), (_time, 0, _x)) / _x
 share_residual = sp.simplify(_mean / (1 - sp.exp(-_x)) - share)
@@ -160,7 +166,7 @@ added_grows_residual = sp.expand(
     sp.diff(_time * _D_rate - _added, _time).subs(sp.diff(_added, _time), _D_rate) - _time * _D_bend
 )
 _w, _m = sp.symbols(
-    "w m", positive=True
+    "from_rise m", positive=True
 )  # of a change the part w came with the rise, m of the rest is in the mean
 _least = 1 - _l * (1 - ((1 - _w) * _m + _w / 3))
 in_mean_least_residual = sp.expand(
@@ -212,7 +218,9 @@ one_maximum_residual = sp.simplify(
 )  # V'' where V' = 0
 
 # --- an observer that takes no friction below 0: what it has less what one that is not cut has ----------------------
-_theta, _z_d, _p_d, _m0, _fhat, _cut = sp.symbols("theta z p m_0 fhat b", real=True)
+_theta, _z_d, _p_d, _m0, _fhat, _cut = sp.symbols(
+    "observer_pole cut_before p most_taken observed b", real=True
+)
 _beta = (1 - _theta) / _theta
 _apart = _z_d + _beta * _p_d  # of the friction
 _p_next = _theta**2 * (_p_d + _apart)
@@ -243,3 +251,110 @@ _z_most, _p_most = _m0 / (1 + _theta), _theta**2 * _m0 / (1 - _theta**2)
 most_observed_residual = sp.simplify((1 - _theta) * _m0 + _theta**2 * _z_most - _z_most)
 most_error_residual = sp.simplify(_theta**2 * (_p_most + _m0) - _p_most)
 together_residual = sp.simplify(_z_most + _beta * _p_most - _m0)
+
+# --- what programs compute: with the parts that occur several times as numbers of their own -------------------------
+_used, _faded, _gone, _shaped, _sloped, _bent, _left_out = sp.symbols(
+    "used faded gradient shape shape_slope bend lacking", positive=True
+)
+_adhered, _slipped = (_kA * _gone) ** 2, (_kS * _gone) ** 2
+_steps = (
+    (_faded, _fading),
+    (_used, _phi),
+    (_gone, _B * _s / _used),
+    (_shaped, _shape.subs(_z, _gone)),
+    (_sloped, 2 / sp.pi * (_kA * (1 - _adhered) / (1 + _adhered) ** 2 + _kS / (1 + _slipped))),
+    (
+        _bent,
+        (4 / sp.pi) * _gone * (_kA**3 * (3 - _adhered) / (1 + _adhered) ** 3 + _kS**3 / (1 + _slipped) ** 2),
+    ),
+    (
+        _left_out,
+        (2 / sp.pi)
+        * (
+            2 * _kA * _gone * _adhered / (1 + _adhered) ** 2
+            + sp.atan(_kS * _gone)
+            - _kS * _gone / (1 + _slipped)
+        ),
+    ),
+)
+_slid = _R * _grip * _faded * _left_out
+_values = (
+    _grip * _used * _shaped - _damped * (1 - _s) * _v / _R,
+    _R * _grip * _B * _sloped / _v - _slid + _damped,
+    _R * _grip * _B * _sloped / _v
+    - _D * _u * _slid
+    + _R * _grip * _gone**2 * _bent * _faded * (1 + _u * _faded / _used),
+    _grip * _faded * _u * _left_out + _damped * (1 - _s) * _v / _R,
+)
+_MEANINGS = {
+    "slip": "Slip, 0 or more [-]",
+    "speed": "Train speed [m/s]",
+    "wheel_radius": "Wheel radius [m]",
+    "grip": "Torque of the friction mu0 of a wheelset, times h over its inertia [rad/s]",
+    "gradient_of_slip": "Gradient of the stress over the slip, for the friction mu0 [-]",
+    "friction_ratio": "Least over largest friction [-]",
+    "friction_decay": "Decay of the friction over the sliding speed [s/m]",
+    "adhesion_reduction": "Reduction in the area of adhesion [-]",
+    "slip_reduction": "Reduction in the area of slip [-]",
+    "damping": "Damping torque of a wheelset over its speed, times h over its inertia [-]",
+    "pulse": "Length of the pulse over the sample time [-]",
+    "over_time": "Sample time over the time of the valve [-]",
+    "from_rise": "Part of the change that came with the rise of the supply [-]",
+    "most_taken": "Largest that was taken out of the observer over a sample since it rested [rad/s]",
+    "observed": "Friction that is observed before the cut [rad/s]",
+    "cut_before": "What was cut before, in the z of the sample [rad/s]",
+    "observer_pole": "Pole of the observer [-]",
+    "torque_rate": "True effect of the rate of the torque, g T' [rad/s]",
+    "growth": "Rate q at which the slip grows, times v/R [rad/s]",
+    "steepness": "Steepness S of the friction over the speed, (R/v) df/ds, above 0 [-]",
+    "steepness_rise": "Rise S_l of it, over the relative fall of the speed, 0 or more [-]",
+    "slowing": "Relative fall of the speed over a sample [-]",
+    "at_fixed_slip": "Rise of the friction at a fixed slip over a sample [rad/s]",
+    "drag_rate": "Change of the drag over a sample [rad/s]",
+    "kappa": "What the reference loses over the friction that makes it [-]",
+    "aside": "(s_r - s)/(1 - s_r) [-]",
+}
+_function = partial(described, equation="docs/theory.md#bounds-of-ways-in", meanings=_MEANINGS)
+_pulled, _beside = sp.symbols("torque_rate aside", real=True)
+FUNCTIONS = (
+    _function(
+        "friction_on_the_way",
+        (_s, _v, _R, _grip, _B, _A, _D, _kA, _kS, _damped),
+        _values,
+        "Friction less damping of a wheel, its steepness, and how they change while it slows down",
+        "f [rad/s], S [-], S_l [-], and f_v v' over the relative fall of the speed [rad/s]",
+        _steps,
+    ),
+    _function(
+        "level_bound",
+        (_pulled, _q, _steep, _S_l, _L, _Ph, _drag_rate, _kappa, _beside),
+        level_bound.subs(_g * _T_rate, _pulled).subs(_s, _s_r - _beside * (1 - _s_r)),
+        "What (1 + kappa) S q tends to at most, with the rate (1 + kappa) S",
+        "B [rad/s]",
+    ),
+    _function(
+        "added_by_rise",
+        (_l, _eta),
+        _l / 2 + _l**2 * _eta / 12,
+        "Part of the first rise of the supply in a sample that a pulse adds, over its part of the room",
+        "Part, at most [-]",
+    ),
+    _function(
+        "share_in_mean",
+        (_l, _eta, _w),
+        (1 - _l / 2 - _l * _w / 6, 1 - _l / 2 + _l**2 * _eta / 12),
+        "Share of a change in its mean over the sample",
+        "Share, at least and at most [-]",
+    ),
+    _function(
+        "most_cut",
+        (_m0, _theta, _fhat, _z_d),
+        (1 - _theta) * _m0 - _theta * _fhat - _theta * (1 - _theta) * _z_d,
+        "What an observer that takes no friction below 0 is cut by at most, where that is above 0",
+        "Cut [rad/s]",
+    ),
+)
+_derived = (_force, _adhering - _sliding + _damped, falling_steepness, fixed_slip)
+kernel_residual, kernel_steepness_residual, kernel_falling_residual, kernel_fixed_residual = (
+    _zero(value - derived) for value, derived in zip(FUNCTIONS[0].expressions, _derived, strict=True)
+)

@@ -187,6 +187,7 @@ BESIDE_THE_PAPER = {
     "friction_observer",
     "fuzzy_loop",
     "fuzzy_surface",
+    "rolling_bounds",
     "rolling_sample",
     "slip_loop",
     "slip_tracking",

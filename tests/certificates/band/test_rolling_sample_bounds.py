@@ -10,6 +10,7 @@ import wspd_design as wd
 from tests.attack.plant import creep_force, filled, resistance, static_load, vented
 from tests.certificates.band.conftest import problem_of
 from tests.certificates.band.sampled_runs import BESIDE, BOX, Law, plant_of, rolling, sampled
+from wspd_design.model.generated import rolling_bounds
 
 H, SLIP, FULL = 0.02, 0.14, 60e3 * 0.02 / 752.0
 INVERSION = 0.36  # s, the time that the inversion takes for those of the valve
@@ -75,14 +76,13 @@ class Wheel:
             - (1.0 + aside) * drag_rate
             + slowing * q
         )
-        in_S = slowing * (1.0 + np.maximum(S_l, 0.0) / np.where(S > 0.0, S, np.inf)) - self.kappa * aside * S
-        rest = self.g * torque_rate - (1.0 + aside) * drag_rate
+        numbers = np.where(S > 0.0, S, np.inf), np.maximum(S_l, 0.0), slowing, fixed, drag_rate
         return SimpleNamespace(
             q=q,
             S=S,
             kappa=self.kappa,
             level=(1.0 + self.kappa) * S * q,
-            most=rest + q * in_S - (1.0 + self.kappa * (1.0 + aside)) * fixed,
+            most=rolling_bounds.level_bound(self.g * torque_rate, q, *numbers, self.kappa, aside),
             growth=growth,
             holds=(s >= 0.0) & (s <= SLIP) & (bend <= 0.0) & (S >= 0.0),
             least=((1.0 + self.kappa * (1.0 + aside)) * fixed + (1.0 + aside) * drag_rate) / self.g,
@@ -169,6 +169,30 @@ def test_friction_gets_steeper_while_the_train_slows_down():
     assert np.count_nonzero(rises) > 100
 
 
+@pytest.mark.parametrize("rail", RAILS)
+def test_generated_friction_is_that_of_the_attack(rail):
+    """Friction, its steepness and how they change with the speed, by complex steps and differences."""
+    problem, points, plant = members(rail, 12)
+    wheel, v, s = Wheel(plant), points["speed"], np.random.default_rng(12).uniform(0.0, 0.14, COUNT)
+    load, made = static_load(plant), problem.rail
+    grip = 2.0 * plant.wheel_radius * load * plant.mu0 * H / plant.wheelset_inertia
+    adhering = (
+        creep_force(plant, 1e-30j, v, load).imag / 1e-30
+    )  # the curve begins with the slope of both parts
+    both = 2.0 / np.pi * (made.adhesion_reduction + made.slip_reduction)
+    gradient = adhering / (both * load * plant.mu0)
+    laws = made.friction_ratio, made.friction_decay, made.adhesion_reduction, made.slip_reduction
+    f, S, S_l, fixed = rolling_bounds.friction_on_the_way(
+        s, v, plant.wheel_radius, grip, gradient, *laws, wheel.damping
+    )
+    np.testing.assert_allclose(f, wheel.f(s, v), rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(S, wheel.steepness(s, v), rtol=1e-8, atol=1e-10)
+    step = 1e-5
+    falls = -(wheel.steepness(s, v * (1.0 + step)) - wheel.steepness(s, v * (1.0 - step))) / (2.0 * step)
+    np.testing.assert_allclose(S_l, falls, rtol=1e-5, atol=1e-7)
+    np.testing.assert_allclose(fixed, -v * wheel.f(s, v + 1j * TINY).imag / TINY, rtol=1e-8, atol=1e-10)
+
+
 def test_growth_of_the_slip_is_that_of_the_identity():
     stop = courses("polach-wet", 6, Filling(0.05), samples=6)
     rates = np.diff(stop.q, axis=0) / STEP
@@ -244,7 +268,7 @@ def test_pulse_under_a_rising_supply_fills_a_bit_more(pulse):
     change = pulse.at(1.0) - pulse.torque
     level = pulse.room * -np.expm1(pulse.rho * np.log1p(-pulse.u))
     more = (change - level) / level * pulse.room / pulse.rise
-    most = pulse.l / 2.0 + pulse.l**2 * pulse.eta / 12.0
+    most = rolling_bounds.added_by_rise(pulse.l, pulse.eta)
     assert np.all(more >= 0.0)
     assert np.all(more <= most * (1.0 + 1e-9) + 1e-9)
     assert np.max(most) == pytest.approx(0.5 + H / 0.3 / 12.0)
@@ -257,13 +281,12 @@ def test_share_of_the_change_in_the_mean(pulse):
     change = pulse.at(1.0) - pulse.torque
     level = pulse.room * -np.expm1(pulse.rho * np.log1p(-pulse.u))
     in_mean, from_rise = pulse.mean(pulse.at) / change, 1.0 - level / change
-    low = 1.0 - pulse.l / 2.0 - pulse.l * from_rise / 6.0
-    high = 1.0 - pulse.l / 2.0 + pulse.l**2 * pulse.eta / 12.0
+    low, high = rolling_bounds.share_in_mean(pulse.l, pulse.eta, from_rise)
     assert np.all(in_mean >= low - 1e-9)
     assert np.all(in_mean <= high + 1e-9)
     assert in_mean.min() >= 0.4439
-    assert in_mean.min() < 0.4530  # a cylinder that begins to fill
-    added = pulse.rise / pulse.room * (pulse.l / 2.0 + pulse.l**2 * pulse.eta / 12.0)
+    assert in_mean.min() < 0.4470  # a cylinder that begins to fill
+    added = pulse.rise / pulse.room * rolling_bounds.added_by_rise(pulse.l, pulse.eta)
     assert np.all(from_rise <= added / (1.0 + added) + 1e-9)
 
 
@@ -273,8 +296,9 @@ def test_share_of_a_fall_in_the_mean(pulse):
         vented(valve, 1.0, pulse.l * H) - 1.0
     )
     np.testing.assert_allclose(in_mean, 1.0 - pulse.l * (1.0 - exact_share(pulse.l * pulse.eta)), atol=1e-9)
-    assert np.all(in_mean >= 1.0 - pulse.l / 2.0 - 1e-9)
-    assert np.all(in_mean <= 1.0 - pulse.l / 2.0 + pulse.l**2 * pulse.eta / 12.0 + 1e-9)
+    low, high = rolling_bounds.share_in_mean(pulse.l, pulse.eta, 0.0)
+    assert np.all(in_mean >= low - 1e-9)
+    assert np.all(in_mean <= high + 1e-9)
 
 
 def test_mean_of_the_law_is_near_the_part_of_its_valve(pulse):
@@ -369,7 +393,7 @@ def test_cut_observer_differs_by_bounded_numbers():
         assert values.max() == pytest.approx(most, rel=1e-6)  # by the input that is -1 all the time
     before = np.concatenate([np.zeros((1, count)), z[:-1]])
     seen = np.concatenate([np.zeros((1, count)), with_cut[:-1, 1]])
-    allowed = (1.0 - THETA) - THETA * seen - THETA * (1.0 - THETA) * before
+    allowed = rolling_bounds.most_cut(1.0, THETA, seen, before)
     assert np.all(cut <= np.maximum(allowed, 0.0) + 1e-12)
     assert np.any(cut > 0.95 * (1.0 - THETA))
 
