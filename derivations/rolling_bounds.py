@@ -40,6 +40,9 @@ _error = (_s_r - _s) * _v / _R
 error_rate_residual = sp.simplify((_rate(_error) + _fall).subs(_q, _growth))
 _wheel = (1 - _s) * _v / _R
 wheel_rate_residual = numerator(_rate(_wheel) + (1 - _s) * _lost / (1 - _s_r) + _q)
+# Without torque the slip stands at this friction: below it q > 0, with any torque, so that the friction rises there.
+_free = -_drag * (1 - _s) / (1 - _s_r + _kappa * (1 - _s))
+free_residual = sp.simplify(_growth.subs(_T, 0).subs(_f, _free))
 _S, _fixed = _R / _v * sp.diff(_f, _s), sp.diff(_f, _v) * _speed_rate  # and f_v v'
 friction_rate_residual = sp.expand(_rate(_f) - (_S * _q + _fixed))
 growth_rate = (

@@ -82,10 +82,10 @@ THEOREMS = (
         "one that is not cut, at most theta^2 m/(1 - theta^2) more in p and m/(1 + theta) more in z, and less of "
         "none. A cut adds at most (1 - theta) m - theta fhat, and none if that is negative. What is put in is the "
         "mean torque of the law less the mean of (1 - s) D/(1 - s_r) + q, and f - d - (g - 1) T. f is never below "
-        "-drag (1 - s)/(1 - s_r + kappa (1 - s)) of the largest drag, unless it began so. (g) While q = 0, q' = g T' "
-        "- (1 + kappa (1 + sigma)) f_v v' - (1 + sigma) drag': where that is positive, q does not fall through 0; "
-        "where q < 0, q' is larger than that if (1 + kappa (1 + sigma)) S >= L + (1 + sigma) kappa q_d, q_d the "
-        "damping of a wheel.",
+        "-drag (1 - s)/(1 - s_r + kappa (1 - s)) of the largest drag, unless it began so, while S >= 0. (g) While q "
+        "= 0, q' = g T' - (1 + kappa (1 + sigma)) f_v v' - (1 + sigma) drag': where that is positive, q does not "
+        "fall through 0; where q < 0, q' is larger than that if (1 + kappa (1 + sigma)) S >= L + (1 + sigma) kappa "
+        "q_d, q_d the damping of a wheel.",
         hypotheses=(
             "the friction is one of the slip and the speed, less the damping of the wheel",
             "for (c): s h and h/T_F at most 1/4",
@@ -104,6 +104,7 @@ THEOREMS = (
         identities=(
             Identity("E' = -y", bounds.error_rate_residual),
             Identity("w' = -(1 - s) D/(1 - s_r) - q", bounds.wheel_rate_residual),
+            Identity("q = 0 without torque at the least f", bounds.free_residual),
             Identity("f' = S q + f_v v'", bounds.friction_rate_residual),
             Identity(
                 "q' = g T' - (1 + kappa (1 + sigma)) (S q + f_v v') - (1 + sigma) drag' + L q",
