@@ -1,0 +1,451 @@
+"""Whether all wheels of a cell that are on the braking curve come into the ellipsoid of a band.
+
+The state of a wheel at a sample is the pull P, z, p and x; all wheels of a cell stay in a polytope, whose bounds are
+worked out from sample to sample. The first samples are followed in time. Then the pull falls through rows: each is as
+wide as the largest fall in a sample, so that every wheel has a sample in each, and the polytope of a row holds what a
+sample makes of it, too. At last the samples are followed in time again until the polytope lies in the ellipsoid.
+
+See :mod:`sample` for the map; what the friction does within a sample is bounded here.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.theorems.from_rolling.braked_wheel import (
+    Between,
+    Friction,
+    Wheels,
+    wheels_of,
+)
+from wspd_design.certificates.theorems.from_rolling.reached import arrived
+from wspd_design.certificates.theorems.from_rolling.sample import (
+    PULL,
+    UNLIKE,
+    WAY,
+    LawNumbers,
+    Pulse,
+    Ranges,
+    image,
+    law_numbers,
+    pulses_of,
+)
+from wspd_design.certificates.theorems.from_rolling.support import Array, Polytope, directions
+from wspd_design.certificates.theorems.slip_band.arrival import Asked
+from wspd_design.certificates.theorems.slip_band.statement import law_of
+
+IN_TIME = directions(1, (1.0, 2.0, 2.0, 1.0))
+IN_ROWS = np.vstack([PULL, np.pad(directions(2, (2.0, 2.0, 1.0)), ((0, 0), (1, 0)))])
+SPARE = 0.05, 2e-4  # of the largest change of the error, and rad/s, that it changes by within two samples
+MORE_WAY = 0.25, 1e-3  # of the way that a valve goes, and rad/s, that it may go more in the next sample
+SLOWER = 0.3  # m/s, that a train may lose within the samples that a bound speaks about
+TRIALS, GROWTH = 60, (0.3, 1.0)  # of a row, and by how much more than needed it grows at first, and later
+ROOMY = 1.002  # of the width of a row over the largest fall
+ROWS, STEPS = 1_000, 1_000  # at most
+
+
+class Start(NamedTuple):
+    """What all wheels of a cell have at the first sample, after the valve left saturation."""
+
+    z: Between  # rad/s
+    p: Between
+    error: Between  # e
+    way: Between  # x
+    slip: Between  # -
+    speed: Between  # m/s
+    room: float  # rad/s, of the supply above the torque, at least
+    supply: float  # -, at least
+
+
+class Plan(NamedTuple):
+    """What the proof says of how to follow the wheels."""
+
+    first: int  # samples that are followed in time
+    until: float  # rad/s, pull at which the rows end
+    last: int  # samples that are followed in time then, at most
+
+
+class Settled(NamedTuple):
+    """What is shown of the wheels when they are there."""
+
+    slip: float  # -, that was not exceeded
+    speed: float  # m/s, at least
+    fastest: float  # m/s, at most
+    samples: float  # at most
+    supply: float  # -, at least
+    errors: Between  # rad/s, of the wheel speed
+    wheel: "State"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State:
+    """All wheels at a sample."""
+
+    states: Polytope
+    error: Between  # e [rad/s]
+    speed: Between  # m/s
+    room: float  # rad/s, at the first sample
+    begun: float  # rad/s, y at the first sample at least
+    risen: float  # rad/s, by which the friction rose since then at most
+    supply: float  # -, at least
+    top: float  # -, slip that was not exceeded
+    samples: float  # that went by at most
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sample:
+    """The sample that begins with a state."""
+
+    law: LawNumbers
+    wheels: Wheels
+    state: State
+    ranges: Ranges
+    pulses: list[Pulse]
+    friction: Friction
+    falling: Between  # y [rad/s]
+    errors: Between  # of the wheel speed, E [rad/s]
+    next_error: Between  # e of the next sample
+    way: float  # rad/s, that the valve may go in the next sample at most
+    reach: Between  # rad/s, that the error falls by within a sample, at least and at most
+    farthest: float  # -, slip in this sample and the next
+
+    def most(self, rows: Array, before: Array | None = None) -> Array:
+        """Return what functions of the next state, and of this one, do not exceed."""
+        return image(self.law, self.wheels, self.state.states, self.ranges, self.pulses, rows, before)
+
+    def ends(self, rows: Array) -> tuple[Array, Array]:
+        """Return the bounds of the next state."""
+        found = self.most(np.vstack([rows, -rows]))
+        return -found[len(rows) :], found[: len(rows)]
+
+    @property
+    def change(self) -> Between:
+        """What the pull changes by."""
+        found = self.most(np.vstack([PULL, -PULL]), np.vstack([-PULL, PULL]))
+        return Between(-float(found[1]), float(found[0]))
+
+    @property
+    def moves(self) -> float:
+        """Most of what the error changes by [rad/s]."""
+        return self.reach.size
+
+    @property
+    def rises(self) -> float:
+        """Rise of the friction at most."""
+        return max((self.ranges.slope * self.falling + self.ranges.friction).high, 0.0)
+
+
+def sample_of(law: LawNumbers, wheels: Wheels, state: State) -> Sample:
+    """Bound all that enters a sample, or refuse it.
+
+    Within it and the next one the error changes at most by what its falling does now, what both ways of the valve add,
+    and a spare; that the friction leaves it in the spare is checked.
+    """
+    rows = np.vstack(
+        [PULL, WAY, law.falling, law.innovation, WAY - PULL, PULL / law.gain - law.ahead * (WAY - PULL)]
+    )
+    pull, way, falling, innovation, ahead, straight = (
+        Between(*map(float, each)) for each in state.states.ends(rows)
+    )
+    falling = falling - state.error
+    errors = Between(law.predicted(pull.low), law.predicted(pull.high)) - law.ahead * ahead
+    if pull.high <= law.gain * law.begins:
+        errors = Between(max(errors.low, straight.low), min(errors.high, straight.high))
+    rise = wheels.full * wheels.supply_rate.high * (1.0 - state.supply)
+    room = (
+        state.room
+        - ((1.0 + wheels.share.high) * state.risen + falling.high - state.begun) / wheels.effect.low
+    )
+    if room <= 0.0:
+        raise Refused("there may be no room in the supply")
+    added = 0.52 * rise / room
+    gone = _goes(wheels, way, added)
+    farther = (1.0 + MORE_WAY[0]) * gone + MORE_WAY[1]
+    twice = wheels.effect.high * (gone + farther)
+    spare = SPARE[0] * falling.size + SPARE[1]
+    moves = Between(min(falling.low - twice - spare, 0.0), max(falling.high + twice + spare, 0.0))
+    slip = wheels.slip - Between(
+        errors.low - 2.0 * moves.high, errors.high - 2.0 * moves.low
+    ) * wheels.radius / (Between(state.speed.low - SLOWER, state.speed.high))
+    friction = wheels.friction(slip, Between(state.speed.low - SLOWER, state.speed.high), moves.size)
+    slope, drag = friction.slope, friction.drag_change
+    left = (1.0 + wheels.share.high) * (
+        2.0 * slope.size * moves.size + 2.0 * friction.fading
+    ) + 2.0 * drag.size
+    if not left <= spare or not 4.0 * friction.loss.high <= SLOWER:
+        raise Refused("the friction may change more within two samples than is assumed")
+    slides = (friction.falls * (wheels.slip - slip) / (1.0 - wheels.slip)).size  # w
+    aside = slope.size * (twice + spare + slides)
+    beside = Between(-aside, aside + friction.fading)
+    torque = friction.seen.low + min(falling.low / wheels.effect.low, falling.low / wheels.effect.high)
+    if torque <= 0.0:
+        raise Refused("there may be no torque to be vented")
+    unlike = UNLIKE * law.nominal * way.size
+    off = (wheels.effect * wheels.fills.union(wheels.vents) - law.nominal).size * (
+        1.0 + added
+    ) + law.nominal * 0.1
+    known = (1.0 - law.kept) * state.error.size + law.a * (innovation.size + off * way.size + unlike)
+    step = wheels.effect.high * gone + law.ahead * (known + gone)
+    lowest = law.pull(law.predicted(pull.low) - max(falling.high, 0.0) - step)
+    highest = law.pull(law.predicted(pull.high) + max(-falling.low, 0.0) + step)
+    steepness = Between(law.steepness(highest) * (1.0 - 1e-9), law.steepness(lowest) * (1.0 + 1e-9))
+    change = slope * falling + beside
+    return Sample(
+        law=law,
+        wheels=wheels,
+        state=state,
+        ranges=Ranges(slope, steepness, state.error, beside, Between(-unlike, unlike)),
+        pulses=pulses_of(law, wheels, way, room, torque, added),
+        friction=friction,
+        falling=falling,
+        errors=errors,
+        next_error=law.kept * state.error + wheels.share * change + drag,
+        way=farther,
+        reach=moves,
+        farthest=slip.high,
+    )
+
+
+def _goes(wheels: Wheels, way: Between, added: float) -> float:
+    """Return what the valve may go at most."""
+    return max(wheels.fills.high * (1.0 + added) * 1.03 * way.high, -1.03 * wheels.vents.high * way.low, 0.0)
+
+
+def _after(sample: Sample, states: Polytope, error: Between) -> State:
+    """Return the state of the next sample with its bounds, or refuse ways that are longer than was assumed."""
+    state, loss = sample.state, sample.friction.loss
+    way = Between(*map(float, states.ends(WAY[None])[0]))
+    if _goes(sample.wheels, way, 0.0) > sample.way:
+        raise Refused("the way of the valve may grow faster than is assumed")
+    return replace(
+        state,
+        states=states,
+        error=error,
+        speed=Between(state.speed.low - loss.high, state.speed.high - loss.low),
+        risen=state.risen + sample.rises,
+        top=max(state.top, sample.farthest),
+        samples=state.samples + 1.0,
+        supply=1.0 - (1.0 - state.supply) * float(np.exp(-sample.wheels.supply_rate.low)) * (1.0 + 1e-12),
+    )
+
+
+def in_time(law: LawNumbers, wheels: Wheels, state: State, count: int) -> Iterator[Sample]:
+    """Follow samples in time; the one after the last is there to be looked at."""
+    for _ in range(count + 1):
+        sample = sample_of(law, wheels, state)
+        yield sample
+        state = _after(sample, Polytope(IN_TIME, *sample.ends(IN_TIME)), sample.next_error)
+
+
+def begun(law: LawNumbers, wheels: Wheels, start: Start) -> State:
+    """Return the first state."""
+    errors = (wheels.slip - start.slip) * start.speed / wheels.radius
+    # P = pull(E + ahead (x - P)), which rises with E and x.
+    pull = Between(
+        _pull(law, errors.low + law.ahead * start.way.low),
+        _pull(law, errors.high + law.ahead * start.way.high),
+    )
+    box = [pull, start.z, start.p, start.way]
+    middle, half = (np.array([f(each) for each in box]) for f in (_middle, _half))
+    at, reach = IN_TIME @ middle, np.abs(IN_TIME) @ half
+    states = Polytope(IN_TIME, at - reach - 1e-12, at + reach + 1e-12)
+    y = float(-states.most(-law.falling[None])[0]) - start.error.high
+    return State(
+        states=states,
+        error=start.error,
+        speed=start.speed,
+        room=start.room,
+        begun=y,
+        risen=0.0,
+        supply=start.supply,
+        top=start.slip.high,
+        samples=0.0,
+    )
+
+
+def _middle(x: Between) -> float:
+    return 0.5 * (x.low + x.high)
+
+
+def _half(x: Between) -> float:
+    return 0.5 * (x.high - x.low)
+
+
+def _pull(law: LawNumbers, seen: float) -> float:
+    """Solve P = pull(seen - ahead P) by bisection."""
+    low, high = 0.0, law.pull(max(seen, 0.0))
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if law.pull(seen - law.ahead * middle) > middle else (low, middle)
+    return 0.5 * (low + high)
+
+
+class Row(NamedTuple):
+    """Bounds of the states in a row, in the order of :data:`IN_ROWS`, and of e."""
+
+    low: Array
+    high: Array
+    error: Between
+
+    def joined(self, other: "Row") -> "Row":
+        """Enclose both."""
+        return Row(
+            np.minimum(self.low, other.low), np.maximum(self.high, other.high), self.error.union(other.error)
+        )
+
+    def holds(self, other: "Row") -> bool:
+        """Whether another one lies in it, whatever its pull."""
+        inside = (self.low <= other.low)[1:].all() and (self.high >= other.high)[1:].all()
+        return bool(inside) and self.error.low <= other.error.low and other.error.high <= self.error.high
+
+    def grown(self, other: "Row", by: float, kept: float) -> "Row":
+        """Return a row that may hold another one, to which it leads: it goes on beyond it."""
+        low = np.where(other.low < self.low, other.low - by * (self.low - other.low) - 1e-9, self.low)
+        high = np.where(other.high > self.high, other.high + by * (other.high - self.high) + 1e-9, self.high)
+        # The error fades by itself, so that what comes in leaves it at that over what fades.
+        ends = [
+            mine + (his - mine) / (1.0 - kept) * 1.01 if beyond else mine
+            for mine, his, beyond in (
+                (self.error.low, other.error.low, other.error.low < self.error.low),
+                (self.error.high, other.error.high, other.error.high > self.error.high),
+            )
+        ]
+        return Row(low, high, Between(*ends))
+
+
+def through_rows(law: LawNumbers, wheels: Wheels, state: State, until: float) -> State:
+    """Follow the pull down through rows until it is below a value in all wheels."""
+    ends = state.states.ends(IN_ROWS)
+    begins = Row(ends[:, 0], ends[:, 1], state.error)
+    (lowest, top), row = map(float, ends[0]), begins
+    if lowest <= until:
+        raise Refused("the rows end above where wheels begin")
+    width, slowest, rises = 1.1 * law.sigma, np.inf, 0.0
+    for _ in range(ROWS):
+        if top <= until:
+            return replace(
+                state,
+                states=Polytope(IN_ROWS, *_with_pull(row, top - width, top)),
+                error=row.error,
+                samples=state.samples + 1.0,
+            )
+        sample, row, image_of, width, rises = _row(
+            law, wheels, state, row, begins if lowest < top else None, (top, width, rises)
+        )
+        change, loss = sample.change, sample.friction.loss
+        slowest = min(slowest, -change.high)
+        count = width / slowest
+        if not (count + 4.0) * loss.high <= SLOWER:
+            raise Refused("a train may lose more speed in a row than is assumed")
+        least = max(width / -change.low - 1.0, 0.0) if top <= lowest else 0.0
+        state = replace(
+            state,
+            speed=Between(state.speed.low - count * loss.high, state.speed.high - least * loss.low),
+            risen=state.risen + count * sample.rises,
+            top=max(state.top, sample.farthest),
+            samples=state.samples + count,
+        )
+        top, row = top - width, image_of
+    raise Refused("there are too many rows")
+
+
+def _with_pull(row: Row, bottom: float, top: float) -> tuple[Array, Array]:
+    low, high = row.low.copy(), row.high.copy()
+    low[0], high[0] = bottom, top
+    return low, high
+
+
+def _row(
+    law: LawNumbers,
+    wheels: Wheels,
+    state: State,
+    row: Row,
+    begins: Row | None,
+    guess: tuple[float, float, float],
+) -> tuple[Sample, Row, Row, float, float]:
+    """Find bounds of a row that its samples do not leave; with what they lead to, its width, and what friction rises.
+
+    ``guess`` are the top of the row, its width, and by how much the friction may rise while a wheel is in it.
+    """
+    top, width, rises = guess
+    for trial in range(TRIALS):
+        here = replace(
+            state,
+            states=Polytope(IN_ROWS, *_with_pull(row, top - width, top)),
+            error=row.error,
+            risen=state.risen + rises,
+        )
+        sample = sample_of(law, wheels, here)
+        change = sample.change
+        if change.high >= 0.0:
+            raise Refused("the pull may not fall")
+        if -change.low > width:
+            width = -change.low * ROOMY
+            continue
+        if width / -change.high * sample.rises > rises:
+            rises = 1.5 * width / -change.high * sample.rises
+            continue
+        leads = Row(*sample.ends(IN_ROWS), sample.next_error)
+        if begins is not None:
+            leads = leads.joined(begins)
+        if row.holds(leads):
+            way = Between(
+                *map(float, Polytope(IN_ROWS, *_with_pull(leads, top - width, top)).ends(WAY[None])[0])
+            )
+            if _goes(wheels, way, 0.0) > sample.way:
+                raise Refused("the way of the valve may grow faster than is assumed")
+            return sample, row, leads, -change.low * ROOMY, rises
+        row = row.grown(leads, GROWTH[trial > 5], law.kept)
+    raise Refused("the states of a row do not stay in it")
+
+
+def settles(
+    problem: Problem,
+    numbers: Mapping[str, tuple[float, float]],
+    start: Start,
+    asked: Sequence[Asked],
+    plan: Plan,
+) -> Settled:
+    """Return what is shown of the wheels of a cell at a sample at which they are in all ellipsoids, or refuse it.
+
+    Parameters
+    ----------
+    problem : Problem
+        Loop of a law with a braking curve, and the box.
+    numbers : mapping
+        Range of each of the eight numbers in the cell.
+    start : Start
+        What its wheels have at the first sample.
+    asked : sequence of Asked
+        Of the ellipsoids of all cells of the band that the cell meets.
+    plan : Plan
+        How the wheels are followed.
+    """
+    exact = law_of(problem.controller)
+    if not asked:
+        raise Refused("there is no band to come to")
+    if exact.torque_slew is None or exact.falls or exact.dead_band or exact.least_pulse:
+        raise Refused("the law has no braking curve, or a slip that changes, or it leaves ways out")
+    if not 0 <= plan.first <= STEPS or not 0 <= plan.last <= STEPS:
+        raise Refused("the plan follows too many samples")
+    law, wheels = law_numbers(exact), wheels_of(problem, exact, numbers)
+    state = begun(law, wheels, start)
+    for sample in in_time(law, wheels, state, plan.first):
+        state = sample.state
+    state = through_rows(law, wheels, state, plan.until)
+    for sample in in_time(law, wheels, state, plan.last):
+        if all(arrived(sample, each) for each in asked):
+            return Settled(
+                slip=max(sample.state.top, sample.farthest),
+                speed=sample.state.speed.low,
+                fastest=sample.state.speed.high,
+                samples=sample.state.samples,
+                supply=sample.state.supply,
+                errors=sample.errors,
+                wheel=sample.state,
+            )
+    raise Refused("wheels may not be in the ellipsoid at the end")
