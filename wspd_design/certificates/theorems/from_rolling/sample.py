@@ -42,6 +42,11 @@ class LawNumbers(NamedTuple):
     vents: float
 
     @property
+    def over_fill(self) -> float:
+        """Sample time over the time of filling that the inversion assumes."""
+        return -log1p(-self.fills)
+
+    @property
     def a(self) -> float:
         """Gain of the observer."""
         return (1.0 - self.theta) ** 2
