@@ -124,7 +124,7 @@ class Wheels:
         """Bound the friction; ``moves`` is what the error changes by in a sample at most [rad/s]."""
         edges = np.linspace(slip.low, slip.high, SLICES + 1)
         parts = [self._sliced(Between(float(a), float(b)), speed) for a, b in pairwise(edges)]
-        used, slope = (reduce(Between.union, (each[k] for each in parts)) for k in (0, 1))
+        used, slope, _ = reduce(lambda a, b: (a[0].union(b[0]), a[1].union(b[1]), max(a[2], b[2])), parts)
         turning = speed * (1.0 - slip) / self.radius
         torque = self.grip * used - self.damping * turning
         constant, linear, square = self.resistance

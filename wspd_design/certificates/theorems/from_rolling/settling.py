@@ -352,8 +352,10 @@ class Row(NamedTuple):
         return Row(low, high, Between(*ends))
 
 
-def through_rows(law: LawNumbers, wheels: Wheels, state: State, until: float) -> State:
-    """Follow the pull down through rows until it is below a value in all wheels."""
+def through_rows(
+    law: LawNumbers, wheels: Wheels, state: State, until: float, rows: list[Sample] | None = None
+) -> State:
+    """Follow the pull down through rows until it is below a value in all wheels; what a row holds goes to ``rows``."""
     ends = state.states.ends(IN_ROWS)
     begins = Row(ends[:, 0], ends[:, 1], state.error)
     (lowest, top), row = map(float, ends[0]), begins
@@ -371,6 +373,8 @@ def through_rows(law: LawNumbers, wheels: Wheels, state: State, until: float) ->
         sample, row, image_of, width, rises = _row(
             law, wheels, state, row, begins if lowest < top else None, (top, width, rises)
         )
+        if rows is not None:
+            rows.append(sample)
         change, loss = sample.change, sample.friction.loss
         slowest = min(slowest, -change.high)
         count = width / slowest

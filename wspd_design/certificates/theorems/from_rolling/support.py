@@ -29,7 +29,8 @@ def directions(entries: int, scales: tuple[float, ...]) -> Array:
         for each in product(range(-entries, entries + 1), repeat=len(scales))
         if gcd(*each) == 1 and next(x for x in each if x) > 0
     ]
-    return np.array(found, dtype=float) * np.array(scales)
+    spread: Array = np.array(found, dtype=float) * np.array(scales)
+    return spread
 
 
 class Polytope:
