@@ -42,11 +42,22 @@ def course(problem, members, samples, inside=24):
 
     def rates(speed, wheel, brake):
         sliding = (speed - radius * wheel) / speed
-        used = load * mu0 * ((1 - rail.friction_ratio) * np.exp(-rail.friction_decay * sliding * speed) + rail.friction_ratio)
+        used = (
+            load
+            * mu0
+            * (
+                (1 - rail.friction_ratio) * np.exp(-rail.friction_decay * sliding * speed)
+                + rail.friction_ratio
+            )
+        )
         reach = stiffness * sliding / used
         adhering = rail.adhesion_reduction * reach
         force = 2 * used / math.pi * (adhering / (1 + adhering**2) + np.arctan(rail.slip_reduction * reach))
-        drag = vehicle.resistance_constant + vehicle.resistance_linear * speed + vehicle.resistance_quadratic * speed**2
+        drag = (
+            vehicle.resistance_constant
+            + vehicle.resistance_linear * speed
+            + vehicle.resistance_quadratic * speed**2
+        )
         slowing = -(2 * vehicle.wheelsets * force + drag) / mass
         return slowing, (2 * radius * force - pads * brake - 2 * vehicle.wheel_damping * wheel) / inertia
 
@@ -61,7 +72,9 @@ def course(problem, members, samples, inside=24):
         error = wheel - (1 - slip) * speed / radius
         turning = known * (1 - slip) / rim
         seen = error + ahead * h * (-turning + (friction - brake) / assumed)
-        pull = np.where(seen * k**2 > slew, np.sqrt(np.maximum(2 * slew * (seen - 0.5 * slew / k**2), 0)), k * seen)
+        pull = np.where(
+            seen * k**2 > slew, np.sqrt(np.maximum(2 * slew * (seen - 0.5 * slew / k**2), 0)), k * seen
+        )
         target = friction - assumed * (turning - pull)
         wanted = np.clip(target, 0, supply * full)
         least = 1e-3 * full
@@ -72,10 +85,17 @@ def course(problem, members, samples, inside=24):
             np.clip(longest[1] * np.log(np.maximum(brake, least) / np.maximum(wanted, least)), 0, 1),
             0.0,
         )
-        counted = [np.maximum(each * h / (float(time) / share), 1e-12) for each, time in ((up, law.fill_time), (down, law.vent_time))]
+        counted = [
+            np.maximum(each * h / (float(time) / share), 1e-12)
+            for each, time in ((up, law.fill_time), (down, law.vent_time))
+        ]
         over = np.maximum(supply * full, brake) - brake
-        rises = over * (up * (1 - (1 - np.exp(-counted[0])) / counted[0]) + (1 - up) * (1 - np.exp(-counted[0])))
-        falls = brake * (down * (1 - (1 - np.exp(-counted[1])) / counted[1]) + (1 - down) * (1 - np.exp(-counted[1])))
+        rises = over * (
+            up * (1 - (1 - np.exp(-counted[0])) / counted[0]) + (1 - up) * (1 - np.exp(-counted[0]))
+        )
+        falls = brake * (
+            down * (1 - (1 - np.exp(-counted[1])) / counted[1]) + (1 - down) * (1 - np.exp(-counted[1]))
+        )
         mean = brake + rises - falls
         begin, summed = SimpleNamespace(speed=speed, wheel=wheel, brake=brake), np.zeros(mass.size)
         for part in range(inside):
@@ -83,10 +103,16 @@ def course(problem, members, samples, inside=24):
 
             def moved(speed, wheel, brake, supply, at=at, up=up, down=down):
                 filling = np.where(at < up, (np.maximum(supply * full, brake) - brake) / fill, 0.0)
-                return *rates(speed, wheel, brake), filling - np.where(at < down, brake / vent, 0.0), supplied * (1 - supply)
+                return (
+                    *rates(speed, wheel, brake),
+                    filling - np.where(at < down, brake / vent, 0.0),
+                    supplied * (1 - supply),
+                )
 
             first = moved(speed, wheel, brake, supply)
-            middle = moved(*(x + 0.5 * step * rate for x, rate in zip((speed, wheel, brake, supply), first, strict=True)))
+            middle = moved(
+                *(x + 0.5 * step * rate for x, rate in zip((speed, wheel, brake, supply), first, strict=True))
+            )
             summed = summed + (brake + 0.5 * step * first[2]) / inside
             speed, wheel, brake, supply = (
                 x + step * rate for x, rate in zip((speed, wheel, brake, supply), middle, strict=True)

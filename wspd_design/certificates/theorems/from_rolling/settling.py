@@ -248,8 +248,14 @@ def _after(sample: Sample, states: Polytope) -> State:
         risen=state.risen + sample.rises,
         top=max(state.top, sample.farthest),
         samples=state.samples + 1.0,
-        supply=1.0 - (1.0 - state.supply) * float(np.exp(-sample.wheels.supply_rate.low)) * (1.0 + 1e-12),
+        supply=_supply(sample.wheels, state, 1.0),
     )
+
+
+def _supply(wheels: Wheels, state: State, samples: float) -> float:
+    """Return the least supply some samples later."""
+    lacks = (1.0 - state.supply) * float(np.exp(-wheels.supply_rate.low * samples))
+    return 1.0 - lacks * (1.0 + 1e-12)
 
 
 def in_time(law: LawNumbers, wheels: Wheels, state: State, count: int) -> Iterator[Sample]:
@@ -387,6 +393,7 @@ def through_rows(
             risen=state.risen + count * sample.rises,
             top=max(state.top, sample.farthest),
             samples=state.samples + count,
+            supply=_supply(wheels, state, least),
         )
         top, row = top - width, image_of
     raise Refused("there are too many rows")
