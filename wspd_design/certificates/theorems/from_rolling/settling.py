@@ -367,7 +367,7 @@ def through_rows(
     (lowest, top), row = map(float, ends[0]), begins
     if lowest <= until:
         raise Refused("the rows end above where wheels begin")
-    width, slowest, rises = 1.1 * law.sigma, np.inf, 0.0
+    width, slowest, fastest, rises, passed = 1.1 * law.sigma, np.inf, 0.0, 0.0, False
     for _ in range(ROWS):
         if top <= until:
             return replace(
@@ -382,11 +382,15 @@ def through_rows(
         if rows is not None:
             rows.append(sample)
         change, loss = sample.change, sample.friction.loss
-        slowest = min(slowest, -change.high)
+        slowest, fastest = min(slowest, -change.high), max(fastest, -change.low)
         count = width / slowest
         if not (count + 4.0) * loss.high <= SLOWER:
             raise Refused("a train may lose more speed in a row than is assumed")
-        least = max(width / -change.low - 1.0, 0.0) if top <= lowest else 0.0
+        if top <= lowest:  # all wheels begin above the row
+            least = max(width / fastest - (0.0 if passed else 1.0), 0.0)
+            passed = True
+        else:
+            least = 0.0
         state = replace(
             state,
             speed=Between(state.speed.low - count * loss.high, state.speed.high - least * loss.low),
