@@ -99,15 +99,12 @@ def course(problem, members, samples, inside=24):
         mean = brake + rises - falls
         begin, summed = SimpleNamespace(speed=speed, wheel=wheel, brake=brake), np.zeros(mass.size)
         for part in range(inside):
-            at = (part + 0.5) / inside
+            # The part of a pulse that lies in this part of the sample counts in all of it.
+            opened, closed = (np.clip(each * inside - part, 0.0, 1.0) for each in (up, down))
 
-            def moved(speed, wheel, brake, supply, at=at, up=up, down=down):
-                filling = np.where(at < up, (np.maximum(supply * full, brake) - brake) / fill, 0.0)
-                return (
-                    *rates(speed, wheel, brake),
-                    filling - np.where(at < down, brake / vent, 0.0),
-                    supplied * (1 - supply),
-                )
+            def moved(speed, wheel, brake, supply, opened=opened, closed=closed):
+                filling = opened * (np.maximum(supply * full, brake) - brake) / fill
+                return *rates(speed, wheel, brake), filling - closed * brake / vent, supplied * (1 - supply)
 
             first = moved(speed, wheel, brake, supply)
             middle = moved(

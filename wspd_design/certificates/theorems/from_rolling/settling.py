@@ -372,7 +372,7 @@ def through_rows(
         if top <= until:
             return replace(
                 state,
-                states=Polytope(IN_ROWS, *_with_pull(row, top - width, top)),
+                states=Polytope(IN_ROWS, *_with_pull(row, top - fastest, top)),
                 error=row.error,
                 samples=state.samples + 1.0,
             )
@@ -399,7 +399,7 @@ def through_rows(
             samples=state.samples + count,
             supply=_supply(wheels, state, least),
         )
-        top, row = top - width, image_of
+        top, row, width = top - width, image_of, max(ROOMY * -change.low, 1e-9)
     raise Refused("there are too many rows")
 
 
@@ -445,7 +445,7 @@ def _row(
         if row.holds(leads):
             if not _near(sample, Polytope(IN_ROWS, *_with_pull(leads, top - width, top))):
                 raise Refused("the way of the valve may grow faster than is assumed")
-            return sample, row, leads, -change.low * ROOMY, rises
+            return sample, row, leads, width, rises
         row = row.grown(leads, GROWTH[trial > 5], law.kept)
     raise Refused("the states of a row do not stay in it")
 
