@@ -127,10 +127,19 @@ def course(problem, members, samples, inside=24):
                 x=(target - begin.brake) * h / assumed,
                 e=turning * h + fallen,
                 E=error,
+                torque=begin.brake * h / assumed,
+                observed=friction * h / assumed,
+                slows=rates(begin.speed, begin.wheel, begin.brake)[0],
+                known=known,
                 slip=(begin.speed - radius * begin.wheel) / begin.speed,
                 speed=begin.speed,
                 supply=supply,
                 room=(supply * full - begin.brake) * h / assumed,
             )
         )
-    return {name: np.array([each[name] for each in found]) for name in found[0]}
+    course_of = {name: np.array([each[name] for each in found]) for name in found[0]}
+    # What turns a wheel without brake, at an error of its speed.
+    course_of["turned"] = lambda speed, error: (
+        rates(speed, (1 - slip) * speed / radius + error, 0.0 * speed)[1] * h
+    )
+    return course_of

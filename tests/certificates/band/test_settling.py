@@ -13,8 +13,15 @@ from wspd_design.certificates.theorems.band import contact_held
 from wspd_design.certificates.theorems.from_rolling import sample as one_sample
 from wspd_design.certificates.theorems.from_rolling import settling
 from wspd_design.certificates.theorems.from_rolling.braked_wheel import Between, wheels_of
+from wspd_design.certificates.theorems.from_rolling.reached import deviations
 from wspd_design.certificates.theorems.from_rolling.sample import law_numbers
-from wspd_design.certificates.theorems.from_rolling.settling import Plan, Start, in_time, settles, through_rows
+from wspd_design.certificates.theorems.from_rolling.settling import (
+    Plan,
+    Start,
+    in_time,
+    settles,
+    through_rows,
+)
 from wspd_design.certificates.theorems.slip_band.arrival import Asked
 from wspd_design.certificates.theorems.slip_band.statement import law_of
 
@@ -147,6 +154,42 @@ def test_the_next_error_is_what_the_state_says(simulated, law):
         assert np.abs(left).max() < 1.7 * np.abs(found["x"][n : n + 59, j]).max()
 
 
+def test_deviations_of_the_band_hold_those_of_simulated_wheels(problem, numbers, followed):
+    """From what the band says they are: torque and friction beside those that hold a speed at an error."""
+    members = drawn(numbers, 60, seed=5)
+    found, settled = course(problem, members, 230), 8.6e-4
+    begins, (first, rows, last) = np.argmax(found["slip"] > BEGINS, axis=0), followed
+    _, inertia, radius, _, torque, *_ = members
+    slip, h, effect = problem.slip, 0.02, torque / 60000.0 * 752.0 / inertia
+    count = 0
+    for j, n in enumerate(begins):
+        n += len(first) - 1
+        while found["P"][n, j] > rows[-1].state.states.extents[0, 0]:
+            n += 1
+        for k, sample in enumerate(last):
+            ends = deviations(sample, settled, np.eye(5))
+            if sample.state.states.extents[0, 1] > sample.law.gain * sample.law.begins or ends is None:
+                continue
+            at = {name: each[n + k, j] for name, each in found.items() if name != "turned"}
+            turning = at["slows"] * (1 - slip) / radius[j] * h
+            turned = found["turned"](found["speed"][n + k], settled)[j]
+            holds = (turned - turning) / effect[j]
+            deviates = np.array(
+                [
+                    at["E"] - settled,
+                    at["p"],
+                    at["observed"] - holds - turning,
+                    at["torque"] - holds,
+                    turning - at["known"] * (1 - slip) / 0.55 * h,
+                ]
+            )
+            low, high = ends
+            assert (low - TOLERANCE <= deviates).all(), (j, k, low, deviates)
+            assert (deviates <= high + TOLERANCE).all(), (j, k, high, deviates)
+            count += 1
+    assert count > 500
+
+
 def test_the_wheels_settle(problem, numbers):
     shown = settles(problem, numbers, START, [asked(0.02)], Plan(3, UNTIL, 60))
     assert 0.137 < shown.slip < 0.142
@@ -178,7 +221,9 @@ def test_a_band_that_they_do_not_reach_is_refused(problem, numbers, ellipsoid, w
         settles(problem, numbers, START, [ellipsoid], Plan(3, UNTIL, 40))
 
 
-@pytest.mark.parametrize("plan", [Plan(-1, UNTIL, 5), Plan(3, UNTIL, 10**9), Plan(3, 0.2, 5), Plan(3, UNTIL, 0)])
+@pytest.mark.parametrize(
+    "plan", [Plan(-1, UNTIL, 5), Plan(3, UNTIL, 10**9), Plan(3, 0.2, 5), Plan(3, UNTIL, 0)]
+)
 def test_plans_that_do_not_fit_are_refused(problem, numbers, plan):
     with pytest.raises(Refused):
         settles(problem, numbers, START, [asked(0.02)], plan)
