@@ -113,6 +113,7 @@ class Wheels:
     mass: Between  # kg
     grip: Between  # torque of a friction of mu0 Q [rad/s]
     grip_seen: Between  # that over g [rad/s]
+    pulled: Between  # m/s, that a friction of mu0 Q on all wheels takes off in a sample
     gradient: Between  # torque over the slip, while all of the contact adheres [rad/s]
     steepness: Between  # B [-]
     resistance: tuple[Between, Between, Between]  # N, N s/m and N s2/m2
@@ -124,14 +125,14 @@ class Wheels:
         """Bound the friction; ``moves`` is what the error changes by in a sample at most [rad/s]."""
         edges = np.linspace(slip.low, slip.high, SLICES + 1)
         parts = [self._sliced(Between(float(a), float(b)), speed) for a, b in pairwise(edges)]
-        used, slope = (reduce(Between.union, (each[k] for each in parts)) for k in (0, 1))
+        used, slope, _ = reduce(lambda a, b: (a[0].union(b[0]), a[1].union(b[1]), max(a[2], b[2])), parts)
         turning = speed * (1.0 - slip) / self.radius
         torque = self.grip * used - self.damping * turning
         constant, linear, square = self.resistance
         reduced = (1.0 - self.slip) * self.h / (self.radius * self.mass)
-        drag = self.share * self.damping * turning
-        drag += (constant + linear * speed + square * speed * speed) * reduced
-        falls = self.share * torque + drag
+        # What the damping takes off f it adds to the drag, and mass, inertia and radius leave what a friction of mu0 does.
+        falls = self.pulled * used * ((1.0 - self.slip) / self.radius)
+        falls += (constant + linear * speed + square * speed * speed) * reduced
         loss = self.radius * falls / (1.0 - self.slip)
         if loss.low <= 0.0:
             raise Refused("a train may not slow down")
@@ -221,6 +222,7 @@ def wheels_of(problem: Problem, law: BandLaw, numbers: Mapping[str, tuple[float,
         mass=mass,
         grip=2.0 * radius * load * mu0 * h / inertia,
         grip_seen=2.0 * radius * load * mu0 * (h / assumed) / pads,
+        pulled=constants().gravity * mu0 * h,
         gradient=2.0 * radius * h * stiffness * load.at(lambda x: x ** (2.0 / 3.0)) / inertia,
         steepness=stiffness * load.at(lambda x: x ** (-1.0 / 3.0)) / mu0,
         resistance=tuple(  # type: ignore[arg-type]

@@ -22,8 +22,8 @@ from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 
 STATES = ("P", "z", "p", "x")
 PULL, Z, P, WAY = np.eye(len(STATES))
-LATE = 0.02  # by which the mean place of a pulse differs from its middle at most, over its length
-UNLIKE = 0.03  # of the change of the torque that the law works out, that differs from 0.6 lambda x at most
+LATE = 0.007  # by which the mean place of a pulse differs from its middle at most, over its length
+UNLIKE = 0.02  # of the change of the torque that the law works out, that differs from 0.6 lambda x at most
 CUTS = (0.0, 0.5, 1.0)  # of the way of a whole sample, between which ways have their own lambda
 GRAIN = 0.02  # of the range of x, that a piece is wide at least
 

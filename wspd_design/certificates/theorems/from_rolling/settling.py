@@ -10,13 +10,15 @@ See :mod:`sample` for the map; what the friction does within a sample is bounded
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from functools import reduce
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.theorems.from_rolling.braked_wheel import (
+    SUPPLY,
     Between,
     Friction,
     Wheels,
@@ -36,12 +38,17 @@ from wspd_design.certificates.theorems.from_rolling.sample import (
 )
 from wspd_design.certificates.theorems.from_rolling.support import Array, Polytope, directions
 from wspd_design.certificates.theorems.slip_band.arrival import Asked
-from wspd_design.certificates.theorems.slip_band.statement import law_of
+from wspd_design.certificates.theorems.slip_band.statement import LETTERS, NAMES, law_of
+
+Numbers: TypeAlias = Mapping[str, tuple[float, float]]
+"""Ranges of the eight numbers of a cell."""
 
 IN_TIME = directions(1, (1.0, 2.0, 2.0, 1.0))
 IN_ROWS = np.vstack([PULL, np.pad(directions(2, (2.0, 2.0, 1.0)), ((0, 0), (1, 0)))])
-SPARE = 0.05, 2e-4  # of the largest change of the error, and rad/s, that it changes by within two samples
-MORE_WAY = 0.25, 1e-3  # of the way that a valve goes, and rad/s, that it may go more in the next sample
+SPARES = 6  # trials of what the friction adds to the change of the error within two samples
+NONE = Between(0.0, 0.0)
+MORE = 1.03  # times rho, that a valve goes of a way at most
+FARTHER = (0.02, 0.1, 0.3, 0.8)  # of what the valve may go in a sample, that it may go more in the next one
 SLOWER = 0.3  # m/s, that a train may lose within the samples that a bound speaks about
 TRIALS, GROWTH = 60, (0.3, 1.0)  # of a row, and by how much more than needed it grows at first, and later
 ROOMY = 1.002  # of the width of a row over the largest fall
@@ -67,6 +74,7 @@ class Plan(NamedTuple):
     first: int  # samples that are followed in time
     until: float  # rad/s, pull at which the rows end
     last: int  # samples that are followed in time then, at most
+    halved: str = ""  # letters of the ranges that are halved then
 
 
 class Settled(NamedTuple):
@@ -78,7 +86,6 @@ class Settled(NamedTuple):
     samples: float  # at most
     supply: float  # -, at least
     errors: Between  # rad/s, of the wheel speed
-    wheel: "State"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,7 +116,8 @@ class Sample:
     falling: Between  # y [rad/s]
     errors: Between  # of the wheel speed, E [rad/s]
     next_error: Between  # e of the next sample
-    way: float  # rad/s, that the valve may go in the next sample at most
+    added: float  # what a rising supply adds to what is filled at most, over it
+    way: Between  # rad/s, that the valve may go in the next sample
     reach: Between  # rad/s, that the error falls by within a sample, at least and at most
     farthest: float  # -, slip in this sample and the next
 
@@ -139,11 +147,11 @@ class Sample:
         return max((self.ranges.slope * self.falling + self.ranges.friction).high, 0.0)
 
 
-def sample_of(law: LawNumbers, wheels: Wheels, state: State) -> Sample:
+def sample_of(law: LawNumbers, wheels: Wheels, state: State, farther: float) -> Sample:
     """Bound all that enters a sample, or refuse it.
 
     Within it and the next one the error changes at most by what its falling does now, what both ways of the valve add,
-    and a spare; that the friction leaves it in the spare is checked.
+    of which the next has ``farther`` of this one more at most, and a spare for the friction.
     """
     rows = np.vstack(
         [PULL, WAY, law.falling, law.innovation, WAY - PULL, PULL / law.gain - law.ahead * (WAY - PULL)]
@@ -164,23 +172,15 @@ def sample_of(law: LawNumbers, wheels: Wheels, state: State) -> Sample:
         raise Refused("there may be no room in the supply")
     added = 0.52 * rise / room
     gone = _goes(wheels, way, added)
-    farther = (1.0 + MORE_WAY[0]) * gone + MORE_WAY[1]
-    twice = wheels.effect.high * (gone + farther)
-    spare = SPARE[0] * falling.size + SPARE[1]
-    moves = Between(min(falling.low - twice - spare, 0.0), max(falling.high + twice + spare, 0.0))
-    slip = wheels.slip - Between(
-        errors.low - 2.0 * moves.high, errors.high - 2.0 * moves.low
-    ) * wheels.radius / (Between(state.speed.low - SLOWER, state.speed.high))
-    friction = wheels.friction(slip, Between(state.speed.low - SLOWER, state.speed.high), moves.size)
+    # Within two samples the torque changes by what the valve goes in both; the mean of both, weighted as the friction
+    # is, has all of the first way and half of the second at most.
+    then = gone + Between(-gone.size, gone.size) * farther
+    twice = (wheels.effect * (gone + then)).union(NONE)
+    mean = (wheels.effect * (gone + 0.5 * then)).union(NONE)
+    moves, slip, friction, spare = _within_two(wheels, state, errors, falling + twice)
     slope, drag = friction.slope, friction.drag_change
-    left = (1.0 + wheels.share.high) * (
-        2.0 * slope.size * moves.size + 2.0 * friction.fading
-    ) + 2.0 * drag.size
-    if not left <= spare or not 4.0 * friction.loss.high <= SLOWER:
-        raise Refused("the friction may change more within two samples than is assumed")
-    slides = (friction.falls * (wheels.slip - slip) / (1.0 - wheels.slip)).size  # w
-    aside = slope.size * (twice + spare + slides)
-    beside = Between(-aside, aside + friction.fading)
+    slides = friction.falls * (wheels.slip - slip) / (1.0 - wheels.slip)  # w
+    beside = slope * (mean + Between(-spare, spare) - slides) + Between(0.0, friction.fading)
     torque = friction.seen.low + min(falling.low / wheels.effect.low, falling.low / wheels.effect.high)
     if torque <= 0.0:
         raise Refused("there may be no torque to be vented")
@@ -189,7 +189,7 @@ def sample_of(law: LawNumbers, wheels: Wheels, state: State) -> Sample:
         1.0 + added
     ) + law.nominal * 0.1
     known = (1.0 - law.kept) * state.error.size + law.a * (innovation.size + off * way.size + unlike)
-    step = wheels.effect.high * gone + law.ahead * (known + gone)
+    step = wheels.effect.high * gone.size + law.ahead * (known + gone.size)
     lowest = law.pull(law.predicted(pull.low) - max(falling.high, 0.0) - step)
     highest = law.pull(law.predicted(pull.high) + max(-falling.low, 0.0) + step)
     steepness = Between(law.steepness(highest) * (1.0 - 1e-9), law.steepness(lowest) * (1.0 + 1e-9))
@@ -204,41 +204,82 @@ def sample_of(law: LawNumbers, wheels: Wheels, state: State) -> Sample:
         falling=falling,
         errors=errors,
         next_error=law.kept * state.error + wheels.share * change + drag,
-        way=farther,
+        added=added,
+        way=then,
         reach=moves,
         farthest=slip.high,
     )
 
 
-def _goes(wheels: Wheels, way: Between, added: float) -> float:
-    """Return what the valve may go at most."""
-    return max(wheels.fills.high * (1.0 + added) * 1.03 * way.high, -1.03 * wheels.vents.high * way.low, 0.0)
+def _within_two(
+    wheels: Wheels, state: State, errors: Between, falls: Between
+) -> tuple[Between, Between, Friction, float]:
+    """Bound what the error falls by in this sample as in the next, the slip, the friction, and what that adds to it."""
+    speed, spare = Between(state.speed.low - SLOWER, state.speed.high), 0.0
+    for _ in range(SPARES):
+        moves = Between(min(falls.low - spare, 0.0), max(falls.high + spare, 0.0))
+        turned = Between(errors.low - 2.0 * moves.high, errors.high - 2.0 * moves.low)
+        slip = wheels.slip - turned * wheels.radius / speed
+        friction = wheels.friction(slip, speed, moves.size)
+        changes = 2.0 * friction.slope.size * moves.size + 2.0 * friction.fading
+        left = (1.0 + wheels.share.high) * changes + 2.0 * friction.drag_change.size
+        if not 4.0 * friction.loss.high <= SLOWER:
+            raise Refused("a train may lose more speed in a sample than is assumed")
+        if left <= spare:
+            return moves, slip, friction, spare
+        spare = 1.2 * left
+    raise Refused("the friction may change without bound within two samples")
 
 
-def _after(sample: Sample, states: Polytope, error: Between) -> State:
-    """Return the state of the next sample with its bounds, or refuse ways that are longer than was assumed."""
+def _goes(wheels: Wheels, way: Between, added: float) -> Between:
+    """Return what the valve may go; a part of a way differs little from that of a short one."""
+    fills, vents = wheels.fills.high * (1.0 + added) * MORE, wheels.vents.high * MORE
+    return Between(vents * min(way.low, 0.0), fills * max(way.high, 0.0))
+
+
+def _after(sample: Sample, states: Polytope) -> State:
+    """Return the state of the next sample with its bounds."""
     state, loss = sample.state, sample.friction.loss
-    way = Between(*map(float, states.ends(WAY[None])[0]))
-    if _goes(sample.wheels, way, 0.0) > sample.way:
-        raise Refused("the way of the valve may grow faster than is assumed")
     return replace(
         state,
         states=states,
-        error=error,
+        error=sample.next_error,
         speed=Between(state.speed.low - loss.high, state.speed.high - loss.low),
         risen=state.risen + sample.rises,
         top=max(state.top, sample.farthest),
         samples=state.samples + 1.0,
-        supply=1.0 - (1.0 - state.supply) * float(np.exp(-sample.wheels.supply_rate.low)) * (1.0 + 1e-12),
+        supply=_supply(sample.wheels, state, 1.0),
     )
+
+
+def _supply(wheels: Wheels, state: State, samples: float) -> float:
+    """Return the least supply some samples later."""
+    lacks = (1.0 - state.supply) * float(np.exp(-wheels.supply_rate.low * samples))
+    return 1.0 - lacks * (1.0 + 1e-12)
 
 
 def in_time(law: LawNumbers, wheels: Wheels, state: State, count: int) -> Iterator[Sample]:
     """Follow samples in time; the one after the last is there to be looked at."""
     for _ in range(count + 1):
-        sample = sample_of(law, wheels, state)
+        sample, after = _next(law, wheels, state)
         yield sample
-        state = _after(sample, Polytope(IN_TIME, *sample.ends(IN_TIME)), sample.next_error)
+        state = after
+
+
+def _next(law: LawNumbers, wheels: Wheels, state: State) -> tuple[Sample, State]:
+    """Return the sample of a state, and the state after it."""
+    for farther in FARTHER:
+        sample = sample_of(law, wheels, state, farther)
+        states = Polytope(IN_TIME, *sample.ends(IN_TIME))
+        if _near(sample, states):
+            return sample, _after(sample, states)
+    raise Refused("the way of the valve may grow faster than is assumed")
+
+
+def _near(sample: Sample, states: Polytope) -> bool:
+    """Whether the valve goes no farther in the next sample than was assumed."""
+    goes = _goes(sample.wheels, Between(*map(float, states.ends(WAY[None])[0])), sample.added)
+    return sample.way.low <= goes.low and goes.high <= sample.way.high
 
 
 def begun(law: LawNumbers, wheels: Wheels, start: Start) -> State:
@@ -317,39 +358,48 @@ class Row(NamedTuple):
         return Row(low, high, Between(*ends))
 
 
-def through_rows(law: LawNumbers, wheels: Wheels, state: State, until: float) -> State:
-    """Follow the pull down through rows until it is below a value in all wheels."""
+def through_rows(
+    law: LawNumbers, wheels: Wheels, state: State, until: float, rows: list[Sample] | None = None
+) -> State:
+    """Follow the pull down through rows until it is below a value in all wheels; what a row holds goes to ``rows``."""
     ends = state.states.ends(IN_ROWS)
     begins = Row(ends[:, 0], ends[:, 1], state.error)
     (lowest, top), row = map(float, ends[0]), begins
     if lowest <= until:
         raise Refused("the rows end above where wheels begin")
-    width, slowest, rises = 1.1 * law.sigma, np.inf, 0.0
+    width, slowest, fastest, rises, passed = 1.1 * law.sigma, np.inf, 0.0, 0.0, False
     for _ in range(ROWS):
         if top <= until:
             return replace(
                 state,
-                states=Polytope(IN_ROWS, *_with_pull(row, top - width, top)),
+                states=Polytope(IN_ROWS, *_with_pull(row, top - fastest, top)),
                 error=row.error,
                 samples=state.samples + 1.0,
             )
         sample, row, image_of, width, rises = _row(
             law, wheels, state, row, begins if lowest < top else None, (top, width, rises)
         )
+        if rows is not None:
+            rows.append(sample)
         change, loss = sample.change, sample.friction.loss
-        slowest = min(slowest, -change.high)
+        slowest, fastest = min(slowest, -change.high), max(fastest, -change.low)
         count = width / slowest
         if not (count + 4.0) * loss.high <= SLOWER:
             raise Refused("a train may lose more speed in a row than is assumed")
-        least = max(width / -change.low - 1.0, 0.0) if top <= lowest else 0.0
+        if top <= lowest:  # all wheels begin above the row
+            least = max(width / fastest - (0.0 if passed else 1.0), 0.0)
+            passed = True
+        else:
+            least = 0.0
         state = replace(
             state,
             speed=Between(state.speed.low - count * loss.high, state.speed.high - least * loss.low),
             risen=state.risen + count * sample.rises,
             top=max(state.top, sample.farthest),
             samples=state.samples + count,
+            supply=_supply(wheels, state, least),
         )
-        top, row = top - width, image_of
+        top, row, width = top - width, image_of, max(ROOMY * -change.low, 1e-9)
     raise Refused("there are too many rows")
 
 
@@ -379,7 +429,7 @@ def _row(
             error=row.error,
             risen=state.risen + rises,
         )
-        sample = sample_of(law, wheels, here)
+        sample = sample_of(law, wheels, here, FARTHER[1])
         change = sample.change
         if change.high >= 0.0:
             raise Refused("the pull may not fall")
@@ -393,19 +443,16 @@ def _row(
         if begins is not None:
             leads = leads.joined(begins)
         if row.holds(leads):
-            way = Between(
-                *map(float, Polytope(IN_ROWS, *_with_pull(leads, top - width, top)).ends(WAY[None])[0])
-            )
-            if _goes(wheels, way, 0.0) > sample.way:
+            if not _near(sample, Polytope(IN_ROWS, *_with_pull(leads, top - width, top))):
                 raise Refused("the way of the valve may grow faster than is assumed")
-            return sample, row, leads, -change.low * ROOMY, rises
+            return sample, row, leads, width, rises
         row = row.grown(leads, GROWTH[trial > 5], law.kept)
     raise Refused("the states of a row do not stay in it")
 
 
 def settles(
     problem: Problem,
-    numbers: Mapping[str, tuple[float, float]],
+    numbers: Numbers,
     start: Start,
     asked: Sequence[Asked],
     plan: Plan,
@@ -437,7 +484,39 @@ def settles(
     for sample in in_time(law, wheels, state, plan.first):
         state = sample.state
     state = through_rows(law, wheels, state, plan.until)
-    for sample in in_time(law, wheels, state, plan.last):
+    parts = [wheels_of(problem, exact, part) for part in _halves(numbers, plan.halved)]
+    return reduce(_either, (_settled(law, part, state, asked, plan.last) for part in parts))
+
+
+def _halves(numbers: Numbers, letters: str) -> list[Numbers]:
+    """Return parts that cover a cell, with some ranges halved."""
+    found = [numbers]
+    for letter in letters:
+        name = (*NAMES, SUPPLY)[(LETTERS + "s").index(letter)]
+        found = [
+            {**each, name: half}
+            for each in found
+            for (low, high), middle in [(each[name], 0.5 * (each[name][0] + each[name][1]))]
+            for half in ((low, middle), (middle, high))
+        ]
+    return found
+
+
+def _either(one: Settled, other: Settled) -> Settled:
+    """Return what holds of both."""
+    return Settled(
+        slip=max(one.slip, other.slip),
+        speed=min(one.speed, other.speed),
+        fastest=max(one.fastest, other.fastest),
+        samples=max(one.samples, other.samples),
+        supply=min(one.supply, other.supply),
+        errors=one.errors.union(other.errors),
+    )
+
+
+def _settled(law: LawNumbers, wheels: Wheels, state: State, asked: Sequence[Asked], count: int) -> Settled:
+    """Follow wheels in time until they are in all ellipsoids, or refuse it."""
+    for sample in in_time(law, wheels, state, count):
         if all(arrived(sample, each) for each in asked):
             return Settled(
                 slip=max(sample.state.top, sample.farthest),
@@ -446,6 +525,5 @@ def settles(
                 samples=sample.state.samples,
                 supply=sample.state.supply,
                 errors=sample.errors,
-                wheel=sample.state,
             )
     raise Refused("wheels may not be in the ellipsoid at the end")

@@ -1,6 +1,6 @@
 """How far linear functions reach on a polytope.
 
-Qhull finds corners in doubles, and they only hint: a function q is at most sum of l b if q = sum of l w with l >= 0, for
+Qhull finds corners in doubles, and they only hint: a function q is at most sum of l b if q = sum of l w with l >= 0, of
 half-spaces w u <= b. Multipliers that meet at a hinted corner are worked out, those below 0 are left out, and what of q
 they miss counts with all that a coordinate may be. So a wrong hint gives a bound that is too large, never too small.
 """
@@ -29,7 +29,8 @@ def directions(entries: int, scales: tuple[float, ...]) -> Array:
         for each in product(range(-entries, entries + 1), repeat=len(scales))
         if gcd(*each) == 1 and next(x for x in each if x) > 0
     ]
-    return np.array(found, dtype=float) * np.array(scales)
+    spread: Array = np.array(found, dtype=float) * np.array(scales)
+    return spread
 
 
 class Polytope:
