@@ -41,7 +41,7 @@ class Caught(NamedTuple):
     slip: tuple[float, float]  # -
     speed: Array  # m/s, at least
     supply: Array  # -, of the full pressure at least
-    top: float  # -, slip that was not exceeded
+    time: Array  # samples since the brake was demanded, at most
     lost: Where
 
 
@@ -440,7 +440,8 @@ class _Way:
             slip=(float(self.edges[self.count]), float(self.edges[last + 1])),
             speed=speed,
             supply=(torque + found["room"].low) / self.cells.one.full * (1.0 - 1e-9),
-            top=float(self.edges[last + 1]),
+            # Each sample leads out of its row.
+            time=self.filled.time[np.arange(count), self.entries[1]] + float(last + 1),
             lost=self.lost | missing,
         )
 

@@ -84,7 +84,7 @@ class Sliding(NamedTuple):
 def sliding(cells: Cells, slip: Interval, speed: Interval) -> Sliding:
     """Bound the friction; the cells in a column, slip and speed in rows, both with any sign of a small slip."""
     rail, reference, h = cells.one.rail, cells.one.slip, cells.one.h
-    slides = slip.at_least(0.0)
+    slides = Interval(np.maximum(slip.low, 0.0), np.maximum(slip.high, -slip.low))
     sliding_speed = slides * speed
     faded = sliding_speed.falling(lambda u: np.exp(-rail.friction_decay * u)) * (1.0 - rail.friction_ratio)
     steeply = faded * rail.friction_decay

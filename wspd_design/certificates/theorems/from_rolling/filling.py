@@ -59,6 +59,7 @@ class Filled:
     motion: Array  # q, at most [rad/s]
     rate: Array  # of the torque so far, at most [rad/s per sample]
     speed: Array  # m/s, at least
+    time: Array  # samples since the brake was demanded, at most
     lost: Where  # of cells
 
 
@@ -77,6 +78,7 @@ class _Passing:
     slow: tuple[Array, Array]  # on the slowest one, when its torque is that of the part at least and at most
     torque: Interval  # rad/s
     slowest: Array  # m/s, that the train has at the end of a part
+    passed: Array  # samples since the brake was demanded, when wheels have passed a part
 
 
 def filled(law: LawNumbers, cells: Cells, fastest: float) -> Filled:
@@ -143,6 +145,8 @@ def _passing(law: LawNumbers, cells: Cells, fastest: float, slow: Array) -> _Pas
         for name in times:
             times[name][:, k] = when[name]
         q, least = moved, slower_after
+    passed = _passed(cells, there, torque_of, late, crossing, fastest)
+    spent = np.diff(passed, axis=1, prepend=0.0)
     return _Passing(
         wheels=wheels,
         speed=speed,
@@ -154,7 +158,8 @@ def _passing(law: LawNumbers, cells: Cells, fastest: float, slow: Array) -> _Pas
         latest=times["fast"],
         slow=(times["since"], times["until"]),
         torque=Interval(found["T low"], found["T high"]),
-        slowest=_slowest(cells, there, torque_of, late, crossing, times["until"], fastest),
+        slowest=fastest - np.cumsum(spent * there.loss.high, axis=1) * (1.0 + SPARE),
+        passed=passed,
     )
 
 
@@ -180,33 +185,24 @@ def _slower(q: Array, drive: Array, held: Array, length: Array, longest: Array) 
     return q
 
 
-def _slowest(
-    cells: Cells,
-    there: Sliding,
-    torque_of: Interval,
-    late: Filling,
-    crossing: Array,
-    until: Array,
-    fastest: float,
+def _passed(
+    cells: Cells, there: Sliding, torque_of: Interval, late: Filling, crossing: Array, fastest: float
 ) -> Array:
-    """Return the speed at the end of each part at least, from when wheels have passed it at the latest.
+    """Return when wheels have passed each part at the latest.
 
-    They pass a part at the latest as long after they come to it as they take with the least motion; or as they take
-    with a motion of :data:`CREEP` once the torque is enough for that at all slips so far.
+    That is as long after they come to it as they take with the least motion; or as they take with a motion of
+    :data:`CREEP` from when the torque is enough for that at all slips so far.
     """
     torque = (torque_of.high + np.maximum(there.slides.high, 0.0) + CREEP) / cells.effect.low[:, None]
     most = np.maximum.accumulate(torque, axis=1)
     passed = np.empty_like(crossing)
-    time, guess = np.zeros(len(crossing)), np.full(len(crossing), 1.5)
+    time, enough = np.zeros(len(crossing)), np.full(len(crossing), 1.5)
     for k in range(crossing.shape[1]):
-        guess = np.where(np.isfinite(guess), guess, 1.5)
-        enough = late.until(most[:, k], guess)
-        guess = enough
+        enough = late.until(most[:, k], np.where(np.isfinite(enough), enough, 1.5))
         creeping = enough + (EDGES[k + 1] + SINK) * fastest / cells.radius.low / CREEP
         time = np.minimum(time + crossing[:, k], np.maximum(creeping, time))
         passed[:, k] = time
-    spent = np.diff(passed, axis=1, prepend=0.0)
-    return np.asarray(fastest - np.cumsum(spent * there.loss.high, axis=1) * (1.0 + SPARE))
+    return passed
 
 
 class _Windows:
@@ -403,6 +399,7 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
         motion=motion.high,
         rate=passing.rate,
         speed=passing.slowest,
+        time=passing.passed,
         lost=lost,
     )
 

@@ -138,6 +138,18 @@ def halved(cell: Cell, letter: str) -> tuple[Cell, Cell]:
     return (*cell[:k], (low, middle), *cell[k + 1 :]), (*cell[:k], (middle, high), *cell[k + 1 :])
 
 
+def cells_of(box: Cell, steps: str) -> list[Cell]:
+    """Return the cells that steps divide a box into."""
+    waiting, found = [box], []
+    for step in steps:
+        cell = waiting.pop()
+        if step == ".":
+            found.append(cell)
+        else:
+            waiting += halved(cell, step)[::-1]
+    return found
+
+
 def fastest_loss(problem: Problem) -> Fraction:
     """Return more than adhesion and resistance take off the train speed [m/s2]."""
     return Fraction(constants().gravity) * Fraction(problem.span("mu0")[1]) + DRAG

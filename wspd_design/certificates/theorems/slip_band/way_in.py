@@ -17,11 +17,18 @@ from wspd_design.certificates.kernel.arb import above, point
 from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.theorems.from_rolling import ways_in
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
 from wspd_design.certificates.theorems.slip_band.checker import inverse, steady_of
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION, SLOPES
 from wspd_design.certificates.theorems.slip_band.proof import read as read_band
-from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of, windows_of
+from wspd_design.certificates.theorems.slip_band.statement import (
+    NAMES,
+    Cell,
+    box_of,
+    cells_of,
+    windows_of,
+)
 from wspd_design.controllers.protection import Protection
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.bounds import Bounds
@@ -43,7 +50,7 @@ NEAR = tuple(name for name in NAMES if name not in VARIED)
 """Numbers that stay near their nominal values: within a share of the way to either end of their ranges."""
 TILTING = (FRICTION, *NEAR)
 """Numbers with which the supply rate of a strip changes."""
-LARGEST_SHARE = Fraction(1, 16)  # for which the friction of the band is bounded
+LARGEST_SHARE = Fraction(1, 2)  # for which the friction of the band is bounded
 MOST_STRIPS, MOST_SAMPLES, MOST_LETTERS = 20_000, 2_000, 60  # of a proof, of a strip, of a number
 AT_ONCE = 256  # strips that are followed together
 WORK = 25  # operations that a sample of a strip is worth
@@ -180,6 +187,8 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
     """Return what decides about a proof and tells its numbers, those of the band among them."""
 
     def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
+        if proof.get("format") == ways_in.FORMAT:
+            return _of_cells(problem, law, proof, work)
         share, rows = read(proof)
         near = around(problem, share)
         low, high = _covered(near, rows)
@@ -199,10 +208,42 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
             asked = asked_of(near, of_band)
         found = followed(near, law, strips_of(rows), asked)
         if asked is not None:
-            _supply_rises(near, of_band, found["supply"], found["speed"])
+            supply_rises(near, of_band, found["supply"], found["speed"])
         return {**band, "share": float(share), "friction low": low, "friction high": high, **found}
 
     return check
+
+
+def _of_cells(
+    problem: Problem, law: Protection, proof: Mapping[str, Any], work: Work
+) -> dict[str, float]:
+    """Decide about a proof in cells, which ends in a band."""
+    from wspd_design.certificates.theorems.slip_band.computed_law import unlike
+
+    found = ways_in.read(proof)
+    near = around(problem, found.share)
+    difference = unlike(near, law)
+    if difference:
+        raise Refused(difference)
+    of_band: Any = proof["band"]
+    if not isinstance(of_band, dict):
+        raise Refused("the proof of the band is no object")
+    band = checker_of_band(near, law)(of_band, work)
+    told = ways_in.followed(near, found, asks_of(near, of_band), work)
+    supply_rises(near, of_band, told.supply, told.speed)
+    low, high = near.span(FRICTION)
+    return {
+        **band,
+        "share": float(found.share),
+        "friction low": low,
+        "friction high": high,
+        "largest slip": told.slip,
+        "time": told.time,
+        "above": told.above,
+        "below": told.below,
+        "supply": told.supply,
+        "speed": told.speed,
+    }
 
 
 def around(problem: Problem, share: Fraction = LARGEST_SHARE) -> Problem:
@@ -215,29 +256,42 @@ def around(problem: Problem, share: Fraction = LARGEST_SHARE) -> Problem:
     return replace(problem, bounds=Bounds.of(ends))
 
 
-def asked_of(problem: Problem, proof: Mapping[str, Any]) -> "Asked":
-    """Return what an accepted proof of a band asks for at the highest speeds, or refuse a band of more than a cell."""
+def asks_of(problem: Problem, proof: Mapping[str, Any]) -> "list[tuple[Cell, Asked]]":
+    """Return what each cell of an accepted proof of a band asks for at the highest speeds."""
     from wspd_design.certificates.theorems.slip_band.arrival import Asked
 
     windows = windows_of(problem)
-    found = read_band(proof, len(windows))
-    if found.share != 1 or len(found.cells) != 1:
+    found, asks = read_band(proof, len(windows)), []
+    cells = cells_of(box_of(problem, found.share), found.steps)
+    for cell, ellipsoids in zip(cells, found.cells, strict=True):
+        begin = ellipsoids[-1]
+        assert begin is not None  # without a reserve no window is left out
+        steady = steady_of(problem, found, (cell, len(windows) - 1), begin)
+        away = above(steady.away(point(begin.drift)))
+        asked = Asked(
+            speeds=windows[-1],
+            settled=float(begin.settled),
+            matrix=inverse(begin.matrix),
+            center=[float(each) for each in begin.center],
+            moved=[float(each) * away for each in begin.moves],
+            supply=float(begin.supply),
+        )
+        asks.append((cell, asked))
+    if found.share != 1:
+        raise Refused("the band must be that of the whole box")
+    return asks
+
+
+def asked_of(problem: Problem, proof: Mapping[str, Any]) -> "Asked":
+    """Return what an accepted proof of a band asks for at the highest speeds, or refuse a band of more than a cell."""
+    asks = asks_of(problem, proof)
+    if len(asks) != 1:
         raise Refused("the band must be that of one cell, which is the whole box")
-    begin = found.cells[0][-1]
-    assert begin is not None  # without a reserve no window is left out
-    steady = steady_of(problem, found, (box_of(problem, found.share), len(windows) - 1), begin)
-    away = above(steady.away(point(begin.drift)))
-    return Asked(
-        speeds=windows[-1],
-        settled=float(begin.settled),
-        matrix=inverse(begin.matrix),
-        center=[float(each) for each in begin.center],
-        moved=[float(each) * away for each in begin.moves],
-        supply=float(begin.supply),
-    )
+    ((_, asked),) = asks
+    return asked
 
 
-def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, speed: float) -> None:
+def supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, speed: float) -> None:
     """Refuse a band that asks for more supply in a slower window than there is when the train gets there.
 
     Parameters
@@ -252,7 +306,10 @@ def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spe
     windows = windows_of(problem)
     found, vehicle = read_band(proof, len(windows)), problem.vehicle
     mu0, slowest = problem.span(FRICTION)[1], problem.span(SUPPLY)[0]
-    supplies = [each.supply for each in found.cells[0] if each is not None]
+    supplies = [
+        max(each.supply for each in alike if each is not None)
+        for alike in zip(*found.cells, strict=True)
+    ]
     lacking = 1.0 - supply
     for k in reversed(range(len(windows) - 1)):  # from the next slower window on
         parts, (_, top) = [each.friction for each in found.friction[k + 1]], windows[k]
