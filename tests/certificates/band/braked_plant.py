@@ -120,22 +120,22 @@ def course(problem, members, samples, inside=24):
         excess = observed - begin.wheel
         psi = friction * h / assumed - grip + (effect - 1) * begin.brake * h / assumed
         found.append(
-            dict(
-                P=pull * h,
-                z=psi - (1 - theta) / theta * excess,
-                p=excess,
-                x=(target - begin.brake) * h / assumed,
-                e=turning * h + fallen,
-                E=error,
-                torque=begin.brake * h / assumed,
-                observed=friction * h / assumed,
-                slows=rates(begin.speed, begin.wheel, begin.brake)[0],
-                known=known,
-                slip=(begin.speed - radius * begin.wheel) / begin.speed,
-                speed=begin.speed,
-                supply=supply,
-                room=(supply * full - begin.brake) * h / assumed,
-            )
+            {
+                "P": pull * h,
+                "z": psi - (1 - theta) / theta * excess,
+                "p": excess,
+                "x": (target - begin.brake) * h / assumed,
+                "e": turning * h + fallen,
+                "E": error,
+                "torque": begin.brake * h / assumed,
+                "observed": friction * h / assumed,
+                "slows": rates(begin.speed, begin.wheel, begin.brake)[0],
+                "known": known,
+                "slip": (begin.speed - radius * begin.wheel) / begin.speed,
+                "speed": begin.speed,
+                "supply": supply,
+                "room": (supply * full - begin.brake) * h / assumed,
+            }
         )
     course_of = {name: np.array([each[name] for each in found]) for name in found[0]}
     # What turns a wheel without brake, at an error of its speed.

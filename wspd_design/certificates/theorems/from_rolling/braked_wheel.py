@@ -130,7 +130,7 @@ class Wheels:
         torque = self.grip * used - self.damping * turning
         constant, linear, square = self.resistance
         reduced = (1.0 - self.slip) * self.h / (self.radius * self.mass)
-        # What the damping takes off f it adds to the drag, and mass, inertia and radius leave what a friction of mu0 does.
+        # What the damping takes off f it adds to the drag, and what is left of the friction is g mu0 of the train.
         falls = self.pulled * used * ((1.0 - self.slip) / self.radius)
         falls += (constant + linear * speed + square * speed * speed) * reduced
         loss = self.radius * falls / (1.0 - self.slip)

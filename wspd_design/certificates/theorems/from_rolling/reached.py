@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def arrived(sample: "Sample", asked: Asked) -> bool:
     """Whether the wheels are in the ellipsoid for sure."""
-    law, state, ranges, wheels = sample.law, sample.state, sample.ranges, sample.wheels
+    law, state = sample.law, sample.state
     ((_, highest),) = state.states.ends(PULL[None])
     if highest > law.gain * law.begins:
         return False

@@ -1,6 +1,7 @@
 """Wheels of a cell on the braking curve: what is simulated stays in its polytopes, and faults are refused."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -83,14 +84,14 @@ def simulated(problem, numbers):
 def asked(half, **other):
     """A ball around the reference."""
     return Asked(
-        **dict(
-            speeds=(23.0, 34.0),
-            settled=0.0,
-            matrix=(np.eye(5) / half**2).tolist(),
-            center=[0.0] * 5,
-            moved=[0.0] * 5,
-            supply=0.4,
-        )
+        **{
+            "speeds": (23.0, 34.0),
+            "settled": 0.0,
+            "matrix": (np.eye(5) / half**2).tolist(),
+            "center": [0.0] * 5,
+            "moved": [0.0] * 5,
+            "supply": 0.4,
+        }
         | other
     )
 
@@ -120,7 +121,7 @@ def test_simulated_wheels_begin_in_the_start_box(simulated):
         assert found["room"][n, j] > START.room
 
 
-def test_simulated_wheels_stay_in_the_polytopes_of_their_samples_and_rows(followed, simulated, law):
+def test_simulated_wheels_stay_in_the_polytopes_of_their_samples_and_rows(followed, simulated):
     first, rows, last = followed
     found, begins = simulated
     visited = np.zeros(len(rows), dtype=int)
@@ -255,7 +256,7 @@ def test_a_smaller_start_box_does_not_hold_the_simulated_wheels(simulated, law, 
     assert not any(inside(first, found, n, j) for j, n in enumerate(begins))
 
 
-# --- planted faults ----------------------------------------------------------------------------------------------------
+# --- planted faults ---------------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("state", range(4))
 def test_a_wrong_map_loses_simulated_wheels(monkeypatch, law, wheels, simulated, state):
     """With half of what one of the states becomes."""
@@ -279,8 +280,8 @@ def test_a_wrong_map_loses_simulated_wheels(monkeypatch, law, wheels, simulated,
     )
 
 
-def test_a_row_that_is_narrower_than_the_fall_is_widened(law, wheels, followed):
-    first, rows, _ = followed
+def test_a_row_that_is_narrower_than_the_fall_is_widened(followed):
+    _, rows, _ = followed
     for row in rows:
         low, high = row.state.states.extents[0]
         assert high - low >= -row.change.low
@@ -289,7 +290,7 @@ def test_a_row_that_is_narrower_than_the_fall_is_widened(law, wheels, followed):
 
 def test_rows_hold_what_they_lead_to(followed):
     _, rows, _ = followed
-    for row, following in zip(rows, rows[1:], strict=False):
+    for row, following in pairwise(rows):
         low, high = row.ends(settling.IN_ROWS)
         for states in (row.state.states, following.state.states):
             assert (low[1:] >= states.low[1:] - 1e-12).all()
