@@ -5,7 +5,7 @@ more than that, and by more than 8 units where NumPy evaluates a function.
 """
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +71,7 @@ class Interval:
 
     def inverse(self) -> "Interval":
         """Return one over it, anything where it holds 0."""
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             found = _rounded(1.0 / self.high, 1.0 / self.low)
         zero = (self.low <= 0.0) & (self.high >= 0.0)
         return Interval(np.where(zero, -np.inf, found.low), np.where(zero, np.inf, found.high))
@@ -116,8 +116,8 @@ class Interval:
         """Return it as a column, to be combined with rows."""
         return Interval(self.low[..., None], self.high[..., None])
 
-    def __getitem__(self, key: object) -> "Interval":
-        return Interval(self.low[key], self.high[key])  # type: ignore[index]
+    def __getitem__(self, key: Any) -> "Interval":
+        return Interval(self.low[key], self.high[key])
 
     def holds(self) -> Where:
         """Tell where anything is meant."""

@@ -3,10 +3,12 @@
 See :mod:`wspd_design.certificates.theorems.slip_band` for motion, proof and checker.
 """
 
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import floor
-from typing import cast
+from typing import Any, cast
 
+from wspd_design.certificates.kernel.checker import Work
 from wspd_design.certificates.kernel.finding import Finding
 from wspd_design.certificates.kernel.obligation import Inequality, Obligation, Special
 from wspd_design.certificates.outside import OutsideModel
@@ -14,6 +16,7 @@ from wspd_design.certificates.quantities import CONTACT, RAIL
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.theorems import band
+from wspd_design.certificates.theorems.from_rolling import ways_in
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, windows_of
 from wspd_design.certificates.theorems.slip_band.way_in import (
@@ -66,9 +69,19 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
             text="strips of friction and supply rate cover both ranges, and of each, with the other numbers anywhere "
             "within a share of their ranges about the nominal values, the loop is enclosed from rolling until the slip "
             "has reached its reference, and the wheels are in the ellipsoid of a band where one is given",
-            check=checker(problem, law),
+            check=_decided(problem, law),
         ),
     )
+
+
+def _decided(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
+    """Return what decides about a proof in strips, or in cells."""
+
+    def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
+        decides = ways_in.checker if proof.get("format") == ways_in.FORMAT else checker
+        return decides(problem, law)(proof, work)
+
+    return check
 
 
 def _tell(problem: Problem, findings: Findings) -> Certificate:

@@ -27,9 +27,10 @@ TOLERANCES = dict(zip(ALL, (1.2, 0.8, 2.5, 1.0, 1.0, 0.45, 1.5, 0.7), strict=Tru
 """How wide cells can be, one range against another, over half of the stated ranges."""
 CELL = 0.25  # of that width, cells that are tried first
 SMALLEST = 0.05  # at which a cell is given up
+TRIED, HOLD = 24, 0.5  # cells that are followed first, and the part of them that has to hold
 MOST = 1_200  # cells that are followed, with an effort of 1
 UNTIL = 0.43, 0.6  # of the reference, slips at which cells end
-WAY = 0.5  # of the way of a whole sample, that wheels of a cell want at most when it ends
+WAY = 0.9  # of the way of a whole sample, that wheels of a cell want at most when it ends
 GROUP = "vti"  # ranges of which groups are halves, where the box is one group too many
 
 
@@ -107,13 +108,14 @@ def _celled(
         if count.left <= 0:
             return None
         batch: list[tuple[str, Box]] = []
-        while todo and len(batch) < AT_ONCE:
+        while todo and len(batch) < (AT_ONCE if starts else TRIED):
             path, here = todo.pop()
             if _widest(here, widths)[1] > CELL:
                 todo += _halved(tree, path, here, widths)
             else:
                 batch.append((path, here))
         count.left -= len(batch)
+        first = not starts
         found = caught_of(problem, [here for _, here in batch], until)
         for (path, here), each in zip(batch, found, strict=True):
             if each is not None and _is_tight(problem, each[0]):
@@ -123,6 +125,8 @@ def _celled(
                 return None
             else:
                 todo += _halved(tree, path, here, widths)
+        if first and sum(each is not None for each in found) < HOLD * len(batch):
+            return None
     return _written(tree, ""), together(starts)
 
 
@@ -133,7 +137,9 @@ def _is_tight(problem: Problem, start: Start) -> bool:
 
     law = law_numbers(law_of(problem.controller))
     size = 6.0 * law.sigma
-    return start.way.high < WAY * law.fills * start.room and start.way.low > -2.0 * size and start.z.size < size
+    return (
+        start.way.high < WAY * law.fills * start.room and start.way.low > -2.0 * size and start.z.size < size
+    )
 
 
 def _halved(tree: dict[str, str], path: str, box: Box, widths: Sequence[float]) -> list[tuple[str, Box]]:

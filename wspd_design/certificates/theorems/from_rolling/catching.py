@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wspd_design.certificates.kernel.interval import Array, Interval, Where, chosen
-from wspd_design.certificates.theorems.from_rolling.cells import Cells, Sliding, sliding
+from wspd_design.certificates.kernel.interval import Array, Interval, Where
+from wspd_design.certificates.theorems.from_rolling.cells import Cells, sliding
 from wspd_design.certificates.theorems.from_rolling.filling import EDGES, FLOOR, SINK, Filled
 from wspd_design.certificates.theorems.from_rolling.sample import LawNumbers
 
@@ -28,14 +28,16 @@ WIDTH, GROWS, GRAIN = 4e-4, 0.05, 1e-5  # of a row: at most, and over the slip
 AHEAD = 60  # rows that a sample leads over at most
 STATES = ("y", "z", "p", "error", "way", "room")
 SLICE, LEAST, MOST = 0.01, 0.0, 0.4  # rad/s, of y
-WAYS = np.array([-np.inf, -0.03, -0.02, -0.01, -0.005, 0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.045, 0.07, 0.1, np.inf])
+WAYS = np.array(
+    [-np.inf, -0.03, -0.02, -0.01, -0.005, 0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.045, 0.07, 0.1, np.inf]
+)
 SLOWER = 0.05  # of the speed, that a train may have lost when its wheels are caught
 WHOLE = 1e-3  # of the full torque, and rad/s: as the inversion of the valve, below which it does not divide
-TRIALS = 2
+TRIALS = 2  # of cutting a box
 
 
 class Caught(NamedTuple):
-    """Wheels of each cell at the first sample beyond a slip."""
+    """Wheels of each cell at the first sample beyond the last row."""
 
     states: Mapping[str, Interval]  # of STATES [rad/s]
     slip: tuple[float, float]  # -
@@ -71,7 +73,7 @@ def rows(begin: float, end: float) -> tuple[Array, int]:
 
 
 def caught(law: LawNumbers, cells: Cells, filled: Filled, fastest: float, until: float) -> Caught:
-    """Follow wheels whose valves pause until their slip is beyond ``until``, whatever becomes of them."""
+    """Follow wheels whose valves pause through all rows that begin below a slip, whatever becomes of them."""
     with np.errstate(all="ignore"):
         return _Way(law, cells, filled, fastest, until).followed()
 
@@ -79,9 +81,7 @@ def caught(law: LawNumbers, cells: Cells, filled: Filled, fastest: float, until:
 class _Way:
     """The way of all wheels of some cells through the rows."""
 
-    def __init__(
-        self, law: LawNumbers, cells: Cells, filled: Filled, fastest: float, until: float
-    ) -> None:
+    def __init__(self, law: LawNumbers, cells: Cells, filled: Filled, fastest: float, until: float) -> None:
         self.law, self.cells, self.filled, self.fastest = law, cells, filled, fastest
         count = len(filled.lost)
         self.lost = filled.lost.copy()
@@ -102,7 +102,15 @@ class _Way:
         self.torque = (1.0 + column.share) * self.there.friction + self.there.drag
         self.pending: dict[int, list[Boxes]] = defaultdict(list)
         self.rate = np.zeros(count)
-        self.level = np.zeros(count)
+        # S q is no more where wheels are caught first; later its own bound holds.
+        self.level = np.where(filled.alive, filled.steep, 0.0).max(axis=1)
+        t = self.there
+        aside = 1.0 + (cells.one.slip + SINK) / (1.0 - cells.one.slip)
+        steep = np.maximum(t.slope.low, FLOOR)
+        self.gains = MOST * (t.loss.high / self.slow[:, None]) * (1.0 + t.rises / steep)
+        self.gains += MOST**2 * t.bends * (cells.radius.high / self.slow)[:, None] / steep
+        self.gains += aside * (t.eases + ((cells.share * cells.damping).high * 2.0 * MOST)[:, None])
+        self.gains = np.where(t.slope.low > FLOOR, self.gains, np.inf)
 
     def followed(self) -> Caught:
         """Go through all rows."""
@@ -141,13 +149,13 @@ class _Way:
         }
         whole = states["room"] * self.law.fills
         states["way"] = Interval(
-            np.maximum(filled.way[cell, parts].min(axis=1), self._after_whole(row, cell, states)), whole.high
+            np.maximum(filled.way[cell, parts].min(axis=1), self._after_whole(row, cell)), whole.high
         )
         speed = filled.speed[cell, parts].min(axis=1)
         self.rate = np.maximum(self.rate, np.where(there, filled.rate[:, parts].max(axis=1), 0.0))
         return _sliced(Boxes(cell, states, speed))
 
-    def _after_whole(self, row: int, cell: Index, states: Mapping[str, Interval]) -> Array:
+    def _after_whole(self, row: int, cell: Index) -> Array:
         """What is wanted at least after a sample of which all was filled."""
         law, filled = self.law, self.filled
         before = int(np.searchsorted(EDGES, self.edges[row] * 0.5, side="right"))
@@ -159,12 +167,22 @@ class _Way:
         )
         g, steep = self.cells.effect[cell], self._steepest(row)[cell]
         change = filled.rate[cell, parts].max(axis=1)
-        unlike = np.maximum(g.high * 0.51 - 0.4 * law.nominal * law.over_fill / (law.over_fill * self.cells.fills[cell].high), 0.0) * change
+        unlike = (
+            np.maximum(
+                g.high * 0.51
+                - 0.4 * law.nominal * law.over_fill / (law.over_fill * self.cells.fills[cell].high),
+                0.0,
+            )
+            * change
+        )
         known = (1.0 - law.kept) * error - law.a * (z + p * (1.0 / law.theta))
         known = Interval(known.low - law.a * unlike, known.high)
         beside = z + p * ((1.0 - law.theta) / law.theta) - error
         least = law.fills * room - change * (1.0 + steep * (0.51 * g.high + law.ahead))
         least = least + np.minimum(known.low, 0.0) * (1.0 + steep * law.ahead)
+        motion = np.where(filled.alive, filled.motion, 0.0)[cell, : parts.stop].max(axis=1)
+        way = self.cells.radius.high[cell] / self.slow[cell] * motion
+        self.lost[cell[way > 0.5 * self.edges[row]]] = True
         found: Array = least - 1.05 * law.sigma - steep * np.maximum(beside.high, 0.0)
         return found
 
@@ -175,6 +193,10 @@ class _Way:
     def _cut(self, row: int, boxes: Boxes) -> Boxes | None:
         """Cut boxes to what holds together, and leave out what is empty."""
         law, beta = self.law, (1.0 - self.law.theta) / self.law.theta
+        unknown = np.logical_or.reduce(
+            [np.isnan(each.low) | np.isnan(each.high) for each in boxes.states.values()]
+        )
+        self.lost[boxes.cell[unknown]] = True
         boxes = boxes.kept(~self.lost[boxes.cell])
         errors = self.errors[boxes.cell, row]
         s = boxes.states
@@ -201,22 +223,27 @@ class _Way:
         torque = (there["torque"][cell] + s["y"]) / g
         rise = (cells.one.full - torque - s["room"]).at_least(0.0) * cells.supply_rate
         rise = Interval(rise.low * (1.0 - 0.5 * cells.supply_rate.high), rise.high)
-        self.rate = np.maximum(self.rate, _of_cells(cells.fills.high * law.over_fill * (s["room"].high + rise.high), cell, len(self.rate)))
-        limit = self._limit(row, there)[cell]
         valve = _Valve(law, cells, s["room"], rise, torque)
         ways = valve.parts(s["way"])
         change = valve.change(ways)
+        farthest = s["room"].high + 2.0 * rise.high + np.maximum(-change.low, 0.0)
+        self.rate = np.maximum(
+            self.rate, _of_cells(cells.fills.high * law.over_fill * farthest, cell, len(self.rate))
+        )
         beside = s["z"] + ((1.0 - law.theta) / law.theta) * s["p"] - s["error"]
         gained = g * change
         pull = _pull(law, self.errors[cell, row] + law.ahead * (beside - s["y"]))
-        following: Interval | None = None  # the change of the torque in the next sample
-        friction = y = way = Interval(0.0, 0.0)
-        for _ in range(TRIALS):
-            friction, y, most = self._friction(row, boxes, cells, (ways, change, following), limit, valve)
-            steep = _steepness(law, self._seen(row, boxes, beside, most))
-            z_torque, unlike = valve.learned(g, ways)
-            way = self._way(boxes, cells, ways, steep, (pull, beside, most)) - self._beyond(valve, s["way"], steep)
-            following = valve.change(valve.parts(way, later=True))
+        z_torque, unlike = valve.learned(g, ways)
+        known = (1.0 - law.kept) * s["error"] - law.a * (s["z"] + s["p"] * (1.0 / law.theta) + unlike)
+        step = np.maximum(s["y"].high + np.maximum(gained.high, 0.0), 0.0)
+        step = step + np.maximum(-s["y"].low - np.minimum(gained.low, 0.0), 0.0)
+        step = step + law.ahead * (np.maximum(known.high, -known.low) + np.maximum(change.high, -change.low))
+        steep = _steepness(law, self._seen(row, boxes, beside, step))
+        way = self._way(boxes, cells, ways, steep, (pull, beside, step)) - self._beyond(
+            valve, s["way"], steep
+        )
+        following = valve.change(valve.parts(way, later=True))
+        friction, y = self._friction(row, boxes, cells, (ways, change, following), valve)
         mean = Interval(np.minimum(valve.least_share(ways), 1.0), 1.0)
         moved = s["y"] + gained * mean
         speed = Interval(self.slow[cell], np.full(cell.size, self.fastest))
@@ -225,8 +252,7 @@ class _Way:
             cells.radius.low / speed.high * least * (1.0 - 1e-12),
             cells.radius.high / speed.low * most_moved * (1.0 + 1e-12),
         )
-        sinks = s["y"].low + np.minimum(gained.low, 0.0) - (1.0 + kappa.high) * np.maximum(friction.high, 0.0) - slides.high
-        bad = (length[0] < self.edges[row + 1] - self.edges[row]) | (sinks < 0.0)
+        bad = length[0] < self.edges[row + 1] - self.edges[row]
         seen = torque.low + s["way"].low - pull.high + s["error"].low - there["falls"][cell].high
         bad |= seen <= 0.0
         least_room = 1.1 * WHOLE * (cells.one.full + 0.1)
@@ -238,6 +264,9 @@ class _Way:
             np.searchsorted(self.edges, self.edges[row + 1] + length[1], side="left") - 1 - row,
         )
         bad |= hops[1] > AHEAD
+        bad |= (pull.low <= 1.5 * law.gain * law.begins + steep.high * step) | (
+            steep.high * step >= 0.5 * pull.low
+        )
         self.lost[cell[bad]] = True
         kappa_change = kappa * friction
         drag = Interval(-eases.high, 0.0 * eases.high)
@@ -249,8 +278,7 @@ class _Way:
             "way": way,
             "room": valve.next_room(ways, s["way"]),
         }
-        loss = self.there.loss.high[cell, row]
-        after = Boxes(cell, states, boxes.speed - there["loss"][cell].high - 0.0 * loss)
+        after = Boxes(cell, states, boxes.speed - there["loss"][cell].high)
         after = after.kept(~self.lost[cell])
         keep = ~self.lost[cell]
         nearest, farthest = hops[0][keep], hops[1][keep]
@@ -278,69 +306,81 @@ class _Way:
             "torque": Interval(self.torque.low[:, near].min(axis=1), self.torque.high[:, near].max(axis=1)),
         }
 
-    def _limit(self, row: int, there: Mapping[str, Interval]) -> Array:
-        """S q at most, by its bound, as long as the friction is steep enough for it."""
-        t, cells = self.there, self.cells
-        slope = t.slope.low[:, row]
-        aside = 1.0 + (cells.one.slip + SINK) / (1.0 - cells.one.slip)
-        gains = MOST * (t.loss.high[:, row] / self.slow) * (1.0 + t.rises[:, row] / np.maximum(slope, FLOOR))
-        gains = gains + MOST**2 * t.bends[:, row] * (cells.radius.high / self.slow) / np.maximum(slope, FLOOR)
-        gains = gains + aside * there["eases"].high
-        level = (cells.effect.high * self.rate + gains) / (1.0 + cells.share.low)
-        self.level = np.where(slope > FLOOR, np.maximum(self.level, level), np.inf)
-        return self.level * (1.0 + 1e-9)
+    def _limit(self, row: int, boxes: Boxes, end: Index) -> Array:
+        """S q at most until the end of the next sample, by its bound, while the friction is steep enough for it."""
+        gains = np.maximum.accumulate(self.gains[:, row:], axis=1)[boxes.cell, end - row]
+        cells = self.cells.at(boxes.cell)
+        level = (cells.effect.high * self.rate[boxes.cell] + gains) / (1.0 + cells.share.low) * (1.0 + 1e-9)
+        level = np.maximum(level, self.level[boxes.cell])
+        self.level = np.maximum(self.level, _of_cells(level, boxes.cell, len(self.level)))
+        return np.asarray(level)
 
     def _friction(
         self,
         row: int,
         boxes: Boxes,
         cells: Cells,
-        changes: tuple["tuple[_Part, _Part]", Interval, Interval | None],
-        limit: Array,
+        changes: tuple["tuple[_Part, _Part]", Interval, Interval],
         valve: "_Valve",
-    ) -> tuple[Interval, Interval, Array]:
-        """Return what the friction changes by, the next y, and the motion Y at most.
+    ) -> tuple[Interval, Interval]:
+        """Return what the friction changes by and the next y.
 
         The change weighs S q over two samples, with a weight that rises in the first one and falls in the second.
         """
-        cell, s = boxes.cell, boxes.states
-        ways, change, following = changes
-        g, kappa, t = cells.effect, cells.share, self.there
-        slides, eases = self._around(row)["slides"][cell], self._around(row)["eases"][cell].high
-        after = change if following is None else following
+        cell, s, t = boxes.cell, boxes.states, self.there
+        ways, change, after = changes
+        g, kappa = cells.effect, cells.share
+        around = self._around(row)
+        slides, eases = around["slides"][cell], around["eases"][cell].high
         gained = g * change
-        after_most = g.high * np.maximum(after.high, 0.0)
         slope = t.slope.high[cell, row]
-        fastest = s["y"].high + np.maximum(gained.high, 0.0) + after_most
-        steep = np.minimum(limit, np.maximum(slope, 0.0) * fastest)
-        sixth = (1.0 + kappa.high) * steep / 6.0
-        speed = self.slow[cell]
-        length = cells.radius.high / speed
-        first = s["y"] + Interval(
-            np.minimum(gained.low, 0.0) + 0.6 * g.low * np.maximum(change.low, 0.0) - sixth,
-            np.where(gained.high > 0.0, g.high * valve.in_first(ways), gained.high * 0.0),
-        )
-        second = (
-            s["y"].low + gained.low + g.high * np.minimum(after.low, 0.0),
-            s["y"].high + gained.high + g.high * (valve.in_second(after) if following is not None else np.maximum(after.high, 0.0)) + sixth,
-        )
-        moved = (cells.radius.low / self.fastest) * np.maximum(
-            s["y"].low + np.minimum(gained.low, 0.0) - slides.high - (1.0 + kappa.high) * steep, 0.0
-        )
-        last = self.edges.size - 2
+        lowest = np.minimum.accumulate(t.slope.low[:, row:], axis=1)
+        highest = np.maximum.accumulate(t.slope.high[:, ::-1], axis=1)[:, ::-1]
+        length, last = cells.radius.high / self.slow[cell], self.edges.size - 2
 
         def row_of(slip: Array) -> Index:
             return np.clip(np.searchsorted(self.edges, slip, side="right") - 1, row, last)
 
+        # Within a sample the friction differs from its mean by half of what it changes by at most.
+        base = s["y"].high + np.maximum(gained.high, 0.0) + g.high * np.maximum(after.high, 0.0) + eases
+        swing = np.maximum(
+            highest[cell, row], -lowest[cell, row_of(self.edges[row + 1] + 4.0 * length * base) - row]
+        )
+        swing = 0.5 * (1.0 + kappa.high) * np.maximum(swing, 0.0)
+        fastest = np.where(swing < 0.4, base / (1.0 - np.minimum(swing, 0.4)), np.inf)
+        end = row_of(self.edges[row + 1] + 2.0 * length * np.minimum(fastest, 1.0))
+        falling = np.maximum(-lowest[cell, end - row], 0.0) * fastest
+        limit = self._limit(row, boxes, end)
+        steep = np.minimum(limit, np.maximum(highest[cell, row], 0.0) * fastest)
+        sixth = (1.0 + kappa.high) * np.maximum(steep, falling) / 6.0
+        first = s["y"] + Interval(
+            np.minimum(gained.low, 0.0) + 0.6 * g.low * np.maximum(change.low, 0.0) - sixth,
+            np.where(gained.high > 0.0, g.high * valve.in_first(ways), gained.high * 0.0)
+            + np.where(falling > 0.0, sixth, 0.0),
+        )
+        second = (
+            s["y"].low
+            + gained.low
+            + g.high * np.minimum(after.low, 0.0)
+            - np.where(falling > 0.0, sixth, 0.0),
+            s["y"].high + gained.high + g.high * valve.in_second(after) + sixth + eases,
+        )
+        moved = (cells.radius.low / self.fastest) * np.maximum(
+            s["y"].low
+            + np.minimum(gained.low, 0.0)
+            - slides.high
+            - (1.0 + kappa.high) * np.maximum(steep, falling),
+            0.0,
+        )
         begin_second = row_of(self.edges[row] + moved)
-        end_first = row_of(self.edges[row + 1] + length * np.maximum(first.high, fastest))
-        end = row_of(self.edges[row + 1] + 2.0 * length * fastest)
-        lowest = np.minimum.accumulate(t.slope.low[:, row:], axis=1)
-        highest = np.maximum.accumulate(t.slope.high[:, ::-1], axis=1)[:, ::-1]
-        high = slope, highest[cell, begin_second]
-        high = np.maximum(high[0], highest[cell, row]), high[1]
+        end_first = row_of(self.edges[row + 1] + length * np.minimum(fastest, 1.0))
+        high = np.maximum(slope, highest[cell, row]), highest[cell, begin_second]
         low = lowest[cell, end_first - row], lowest[cell, end - row]
         fading = t.fading[cell, row : row + 2 * AHEAD].max(axis=1) if cell.size else slope
+        sinks = s["y"].low + np.minimum(gained.low, 0.0) - slides.high
+        self.lost[
+            cell[(sinks <= 0.5 * (1.0 + kappa.high) * np.maximum(steep, falling)) | ~np.isfinite(fastest)]
+        ] = True
         more = 1.0 + kappa
         q = (
             Interval(np.maximum(first.low - slides.high, 0.0), np.maximum(first.high - slides.low, 0.0)),
@@ -365,7 +405,9 @@ class _Way:
             least / (1.0 - 0.5 * more.high * np.maximum(-low[1], 0.0)),
         )
         spare = 1e-12
-        found = Interval(least * (1.0 - spare) - 1e-15, np.minimum(limit, most) * (1.0 + spare) + fading + 1e-15)
+        found = Interval(
+            least * (1.0 - spare) - 1e-15, np.minimum(limit, most) * (1.0 + spare) + fading + 1e-15
+        )
         found = Interval(np.where(least < 0.0, least * (1.0 + spare), found.low) - 1e-15, found.high)
         # The next y with one and the same y and change in both terms: it rises with either.
         a, b = np.maximum(high[0], 0.0), np.maximum(high[1], 0.0)
@@ -373,19 +415,26 @@ class _Way:
         added = 0.5 * a * (s["y"].low + share_first * gained.low - slides.low) + 0.5 * b * (
             s["y"].low + gained.low + (second[1] - s["y"].high - gained.high) - slides.low
         )
-        together = s["y"].low + gained.low - more.high * added / (1.0 + 0.5 * b * more.high) - more.high * fading
-        apart = s["y"].low + gained.low - more.high * np.maximum(found.high, 0.0) - more.low * np.minimum(found.high, 0.0)
+        together = (
+            s["y"].low + gained.low - more.high * added / (1.0 + 0.5 * b * more.high) - more.high * fading
+        )
+        apart = (
+            s["y"].low
+            + gained.low
+            - more.high * np.maximum(found.high, 0.0)
+            - more.low * np.minimum(found.high, 0.0)
+        )
         lower = np.where((added > 0.0) & (a < 0.5) & (b < 0.5), np.maximum(together, apart), apart)
         upper = s["y"].high + gained.high - np.where(found.low > 0.0, more.low, more.high) * found.low
-        return found, Interval(lower - 1e-14, upper + eases + 1e-14), fastest
+        return found, Interval(lower - 1e-14, upper + eases + 1e-14)
 
-    def _seen(self, row: int, boxes: Boxes, beside: Interval, most: Array) -> Interval:
+    def _seen(self, row: int, boxes: Boxes, beside: Interval, step: Array) -> Interval:
         """Predicted errors of a sample and the next one."""
         law, s = self.law, boxes.states
         errors = self.errors[boxes.cell, row]
         return Interval(
-            errors.low - law.ahead * (s["y"].high - beside.low) - 1.6 * most,
-            errors.high + law.ahead * np.maximum(beside.high - s["y"].low, 0.0),
+            errors.low - law.ahead * (s["y"].high - beside.low) - step,
+            errors.high + law.ahead * np.maximum(beside.high - s["y"].low, 0.0) + step,
         )
 
     def _way(
@@ -400,15 +449,15 @@ class _Way:
         law, s = self.law, boxes.states
         pull, beside, most = seen
         known = (1.0 - law.kept) * s["error"] - law.a * (s["z"] + s["p"] * (1.0 / law.theta))
-        lowest = np.maximum(pull.low - steep.high * 1.6 * most, 1e-9)
-        curve = Interval(
-            np.minimum(law.sigma * 0.98, steep.low * pull.low), law.sigma * (1.0 + 1.6 * most * steep.high / (2.0 * lowest))
-        )
+        ratio = steep.high * most / (2.0 * pull.low)
+        curve = Interval(law.sigma / (1.0 + ratio) * (1.0 - 1e-12), law.sigma / (1.0 - ratio) * (1.0 + 1e-12))
         found = known * (1.0 + law.ahead * steep) - curve - steep * beside
 
         def of_way(g: Array, rho: Array, share: Array, k: Array) -> Array:
             unlike = share * (g * rho - law.nominal)
-            return 1.0 + k - rho * (1.0 + k * (g * share + law.ahead)) - law.a * unlike * (1.0 + k * law.ahead)
+            return (
+                1.0 + k - rho * (1.0 + k * (g * share + law.ahead)) - law.a * unlike * (1.0 + k * law.ahead)
+            )
 
         for part in ways:
             found = found + part.way * _corners(of_way, cells.effect, part.rho, part.share, steep)
@@ -418,8 +467,12 @@ class _Way:
     @staticmethod
     def _beyond(valve: "_Valve", way: Interval, steep: Interval) -> Interval:
         """What is wanted beyond what a whole sample does, and goes on to be wanted, with its sign turned."""
-        up = Interval(np.maximum(way.low - valve.whole[0].high, 0.0), np.maximum(way.high - valve.whole[0].low, 0.0))
-        down = Interval(np.minimum(way.low + valve.whole[1].low, 0.0), np.minimum(way.high + valve.whole[1].high, 0.0))
+        up = Interval(
+            np.maximum(way.low - valve.whole[0].high, 0.0), np.maximum(way.high - valve.whole[0].low, 0.0)
+        )
+        down = Interval(
+            np.minimum(way.low + valve.whole[1].low, 0.0), np.minimum(way.high + valve.whole[1].high, 0.0)
+        )
         return -((up + down) * (1.0 + steep))
 
     def _end(self) -> Caught:
@@ -434,7 +487,9 @@ class _Way:
         np.minimum.at(speed, boxes.cell, boxes.speed)
         last = max(self.pending, default=self.count)
         missing = ~np.isfinite(speed)
-        torque = (self.torque[:, self.count : self.count + AHEAD].low.min(axis=1) + found["y"].low) / self.cells.effect.high
+        torque = (
+            self.torque[:, self.count : self.count + AHEAD].low.min(axis=1) + found["y"].low
+        ) / self.cells.effect.high
         return Caught(
             states=found,
             slip=(float(self.edges[self.count]), float(self.edges[last + 1])),
@@ -459,7 +514,9 @@ class _Part(NamedTuple):
 class _Valve:
     """What the valves do in a sample: they fill in a room, and vent from a torque."""
 
-    def __init__(self, law: LawNumbers, cells: Cells, room: Interval, rise: Interval, torque: Interval) -> None:
+    def __init__(
+        self, law: LawNumbers, cells: Cells, room: Interval, rise: Interval, torque: Interval
+    ) -> None:
         self.law, self.cells, self.room, self.rise = law, cells, room, rise
         self.ratio = np.minimum(rise.high / np.maximum(room.low, 1e-9), 1.0)
         self.over = cells.fills * law.over_fill, cells.vents * law.over_fill
@@ -468,7 +525,9 @@ class _Valve:
         farther = self.over[0].high * (room.high + rise.high), self.over[1].high * torque.high
         self.whole_later = (
             Interval(0.0 * room.low, law.fills * (room.high + rise.high + farther[1])),
-            Interval(law.vents * np.maximum(torque.low - farther[1], 0.0), law.vents * (torque.high + farther[0])),
+            Interval(
+                law.vents * np.maximum(torque.low - farther[1], 0.0), law.vents * (torque.high + farther[0])
+            ),
         )
         self.fills = _powers(cells.fills, law.fills) * Interval(1.0, 1.0 + 0.5056 * self.ratio)
         self.vents = _powers(cells.vents, law.vents)
@@ -477,19 +536,28 @@ class _Valve:
         """Return what fills and what vents."""
         law = self.law
         filling, venting = self.whole_later if later else self.whole
-        up = Interval(np.minimum(np.maximum(way.low, 0.0), filling.low), np.minimum(np.maximum(way.high, 0.0), filling.high))
-        down = Interval(np.maximum(np.minimum(way.low, 0.0), -venting.high), np.maximum(np.minimum(way.high, 0.0), -venting.low))
+        up = Interval(
+            np.minimum(np.maximum(way.low, 0.0), filling.low),
+            np.minimum(np.maximum(way.high, 0.0), filling.high),
+        )
+        down = Interval(
+            np.maximum(np.minimum(way.low, 0.0), -venting.high),
+            np.maximum(np.minimum(way.high, 0.0), -venting.low),
+        )
         found = []
         for size, whole, rho, over, ratio in (
             (up, filling, self.fills, self.over[0], self.ratio),
             (-down, venting, self.vents, self.over[1], 0.0 * self.ratio),
         ):
             shortest = 0.9727 * np.where(size.low > 0.0, size.low / whole.high, 0.0)
-            longest = np.where(size.high > 0.0, np.minimum(size.high / np.maximum(whole.low, 1e-300), 1.0), 0.0)
+            longest = np.where(
+                size.high > 0.0, np.minimum(size.high / np.maximum(whole.low, 1e-300), 1.0), 0.0
+            )
             length = Interval(np.clip(shortest * (1.0 - 1e-12), 0.0, 1.0), longest)
             late = 0.506 * ratio / 6.0
             share = Interval(
-                1.0 - 0.5 * length.high - late * length.high, 1.0 - 0.5 * length.low + over.high * length.high**2 / 12.0
+                1.0 - 0.5 * length.high - late * length.high,
+                1.0 - 0.5 * length.low + over.high * length.high**2 / 12.0,
             )
             unlike = size.high * law.nominal
             beside = Interval(-unlike * (0.0139 + late), unlike * over.high / 12.0)
@@ -540,7 +608,7 @@ class _Valve:
         """Room of the supply in the next sample."""
         change, tau = self.change(parts), self.over[0]
         left = (-tau).exp()
-        filled_all = (self.room * left + self.rise * Interval(1.0 - 0.5 * tau.high, 1.0 + 0.0 * tau.high))
+        filled_all = self.room * left + self.rise * Interval(1.0 - 0.5 * tau.high, 1.0 + 0.0 * tau.high)
         found = self.room + self.rise - change
         whole = way.low >= self.whole[0].high
         return Interval(
@@ -575,7 +643,7 @@ def _steepness(law: LawNumbers, seen: Interval) -> Interval:
 
 def _corners(function: Callable[..., Array], *ranges: Interval) -> Interval:
     """Values of a function that is affine in each of its arguments."""
-    low, high = np.inf, -np.inf
+    low, high = np.asarray(np.inf), np.asarray(-np.inf)
     for ends in product(*((each.low, each.high) for each in ranges)):
         value = function(*ends)
         low, high = np.minimum(low, value), np.maximum(high, value)
@@ -634,7 +702,9 @@ def _joined(chunks: list[Boxes]) -> Boxes:
     order = np.argsort(key, kind="stable")
     starts = np.flatnonzero(np.diff(key[order], prepend=-1))
     joined = {
-        name: Interval(np.minimum.reduceat(each.low[order], starts), np.maximum.reduceat(each.high[order], starts))
+        name: Interval(
+            np.minimum.reduceat(each.low[order], starts), np.maximum.reduceat(each.high[order], starts)
+        )
         for name, each in states.items()
     }
     return Boxes(cell[order][starts], joined, np.minimum.reduceat(speed[order], starts))

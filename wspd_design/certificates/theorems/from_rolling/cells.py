@@ -1,8 +1,8 @@
 """Wheels of many cells at a time, and the friction that brakes them over slip and speed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,7 +30,7 @@ class Cells:
     resistance: tuple[Interval, Interval, Interval]
     one: Wheels  # any of them, for what they have in common
 
-    def at(self, key: object) -> "Cells":
+    def at(self, key: Any) -> "Cells":
         """Return the numbers of some of the cells, in any shape that an index gives."""
         return Cells(
             **{name: getattr(self, name)[key] for name in NUMBERS}, resistance=self.resistance, one=self.one
@@ -61,9 +61,7 @@ def gathered(wheels: Sequence[Wheels]) -> Cells:
 
     first = wheels[0]
     constant, linear, square = (Interval(each.low, each.high) for each in first.resistance)
-    return Cells(
-        **{name: array(name) for name in NUMBERS}, resistance=(constant, linear, square), one=first
-    )
+    return Cells(**{name: array(name) for name in NUMBERS}, resistance=(constant, linear, square), one=first)
 
 
 class Sliding(NamedTuple):
@@ -101,8 +99,7 @@ def sliding(cells: Cells, slip: Interval, speed: Interval) -> Sliding:
     constant, linear, square = cells.resistance
     reduced = (1.0 - reference) * h / (cells.radius * cells.mass)
     drag = (
-        cells.share * cells.damping * turning
-        + (constant + linear * speed + square * speed * speed) * reduced
+        cells.share * cells.damping * turning + (constant + linear * speed + square * speed * speed) * reduced
     )
     falls = cells.share * friction + drag
     loss = (cells.radius * falls / (1.0 - reference)).at_least(0.0)
@@ -146,7 +143,7 @@ def _shape(reach: Interval, adhesion: float, slip: float) -> tuple[Interval, Int
     """
     a, b, factor = reach * adhesion, reach * slip, about(2.0 / np.pi)
 
-    def bounded(number: Interval, function: object, turns: Sequence[float]) -> Interval:
+    def bounded(number: Interval, function: Callable[[Array], Array], turns: Sequence[float]) -> Interval:
         found = _ends(number, function)
         for turn in turns:
             there = (number.low <= turn) & (number.high >= turn)
@@ -160,15 +157,14 @@ def _shape(reach: Interval, adhesion: float, slip: float) -> tuple[Interval, Int
     apart = apart + Interval(-1e-14, 1e-14)  # a difference of numbers near 1
     apart = (apart + b.rising(lambda x: np.arctan(x) - x / (1.0 + x * x))).at_least(0.0)
     root = np.sqrt(2.0)
-    curved = bounded(
-        a, lambda x: 2.0 * x * (3.0 - x * x) / (1.0 + x * x) ** 3, (root - 1.0, root + 1.0)
-    ) * (adhesion * adhesion)
+    curved = bounded(a, lambda x: 2.0 * x * (3.0 - x * x) / (1.0 + x * x) ** 3, (root - 1.0, root + 1.0)) * (
+        adhesion * adhesion
+    )
     curved = curved + bounded(b, lambda x: 2.0 * x / (1.0 + x * x) ** 2, (TURN,)) * (slip * slip)
     return level * factor, steep * factor, apart * factor, curved * factor
 
 
-def _ends(number: Interval, function: object) -> Interval:
-    assert callable(function)
+def _ends(number: Interval, function: Callable[[Array], Array]) -> Interval:
     one, other = function(number.low), function(number.high)
     low, high = np.minimum(one, other), np.maximum(one, other)
     spare = 4e-15 * (1.0 + np.abs(high))

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from wspd_design.certificates.kernel.checker import Refused
-from wspd_design.certificates.kernel.interval import Array, Interval, Where, interval
+from wspd_design.certificates.kernel.interval import Array, Interval, Where
 from wspd_design.certificates.theorems.from_rolling.cells import Cells, Sliding, sliding
 from wspd_design.certificates.theorems.from_rolling.sample import LawNumbers
 from wspd_design.certificates.theorems.from_rolling.supply import SPARE, Filling
@@ -58,6 +57,7 @@ class Filled:
     room: Interval  # rad/s
     motion: Array  # q, at most [rad/s]
     rate: Array  # of the torque so far, at most [rad/s per sample]
+    steep: Array  # S q, at most [rad/s]
     speed: Array  # m/s, at least
     time: Array  # samples since the brake was demanded, at most
     lost: Where  # of cells
@@ -107,12 +107,14 @@ def _passing(law: LawNumbers, cells: Cells, fastest: float, slow: Array) -> _Pas
     faster, slower = (fastest / wheels.radius).high[:, 0], (speed / wheels.radius).low
     width = np.diff(EDGES)
     share = cells.share
-    found = {name: np.empty((count, parts)) for name in ("q", "least", "rate", "slow rate", "T low", "T high")}
+    found = {
+        name: np.empty((count, parts)) for name in ("q", "least", "rate", "slow rate", "T low", "T high")
+    }
     times = {name: np.empty((count, parts)) for name in ("soon", "fast", "since", "until")}
     crossing = np.empty((count, parts))
     q, least, rate, lowest = (np.zeros(count) for _ in range(4))
     begun = np.full(count, 1.5)
-    when = {name: begun for name in times}
+    when = dict.fromkeys(times, begun)
     peak = fast.peak
     for k in range(parts):
         slope, loses = there.slope[:, k], (there.loss / speed).high[:, k]
@@ -139,7 +141,9 @@ def _passing(law: LawNumbers, cells: Cells, fastest: float, slow: Array) -> _Pas
         slower_after = _slower(least, drive, held, width[k] * slower[:, k], width[k] * faster)
         crossing[:, k] = width[k] * faster / np.maximum(np.minimum(least, slower_after), 1e-9)
         for name, value in zip(
-            found, (np.maximum(q, moved), np.minimum(least, slower_after), rate, slow_rate, lowest, most), strict=True
+            found,
+            (np.maximum(q, moved), np.minimum(least, slower_after), rate, slow_rate, lowest, most),
+            strict=True,
         ):
             found[name][:, k] = value
         for name in times:
@@ -233,12 +237,14 @@ class _Windows:
         """Last part from which a part is reached with the least way."""
         reached = np.minimum.accumulate((EDGES[:-1] + way)[:, ::-1], axis=1)[:, ::-1]
         found = np.array([np.searchsorted(row, EDGES[1:], side="right") - 1 for row in reached])
-        return np.minimum(np.maximum(found, 0), self.own)
+        clipped: Index = np.minimum(np.maximum(found, 0), self.own)
+        return clipped
 
     def _end(self, way: Array) -> Index:
         """First part from which a part is reached with the longest way."""
         found = np.array([np.searchsorted(EDGES, row, side="right") - 1 for row in EDGES[:-1] - way])
-        return np.minimum(np.maximum(found, 0), self.own)
+        clipped: Index = np.minimum(np.maximum(found, 0), self.own)
+        return clipped
 
     @staticmethod
     def _at(table: Index, index: Index) -> Index:
@@ -304,7 +310,7 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
     theta, kept, beta = law.theta, law.kept, (1.0 - law.theta) / law.theta
     observed = (1.0 - theta) ** 2 * (np.arange(BACK) + 1.0) * theta ** np.arange(BACK)
     filtered = (1.0 - kept) * kept ** np.arange(BACK)
-    steep = _steepest(law, wheels, passing)
+    steep = _steepest(wheels, passing)
     coming, since = _since(growth, windows, steep)
     rooms = _rooms(law, cells, passing)
     nominal = law.over_fill * law.nominal  # of the room, that the law takes a sample to fill
@@ -326,13 +332,13 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
         before = (one + other) * 0.5
         p = p + weight * Interval(before.low, np.minimum(before.high, since[back].high - 0.0 * coming.low))
     # --- what the torque does beyond what the law takes it for
-    ratio = np.minimum(cells.supply_rate.high[:, None] * cells.one.full / _window(np.minimum, rooms.low, windows, 5), 1.0)
+    ratio = np.minimum(cells.supply_rate.high[:, None] * cells.one.full / _least(rooms.low, windows, 5), 1.0)
     tau = wheels.fills * law.over_fill
     goes = (1.0 - (-tau).exp()) * Interval(1.0, 1.0 + 0.506 * ratio)
     own_mean = Interval(0.5 * nominal * (1.0 - nominal / 3.0), 0.5 * nominal) / goes
     aside = 0.506 * ratio / 6.0
     unlike = wheels.effect * Interval(0.5 - aside, 0.5056) - own_mean
-    change = Interval(0.97 * _window(np.minimum, passing.least_rate, windows, 5), passing.rate)
+    change = Interval(0.97 * _least(passing.least_rate, windows, 5), passing.rate)
     change = Interval(np.where(windows.far[5] == 0, 0.0, np.maximum(change.low, 0.0)), change.high)
     spare = 0.03 * 0.2 * passing.rate
     unlike, learned = unlike * change, ((wheels.effect - 1.0) - (1.0 - theta) * unlike) * change
@@ -345,7 +351,9 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
     error = error + Interval(-drags, drags + started)
     # --- what the law wants
     moves = np.maximum.accumulate(there.slides.high + motion.high, axis=1)
-    rests = np.minimum.accumulate(motion.low[:, ::-1], axis=1)[:, ::-1] - 2.0 * there.drag.high * (EDGES[:-1] <= FIRST)
+    rests = np.minimum.accumulate(motion.low[:, ::-1], axis=1)[:, ::-1] - 2.0 * there.drag.high * (
+        EDGES[:-1] <= FIRST
+    )
     lags = _lags(law, cells, passing, observed[:WEIGHED])
     falls = np.maximum.accumulate(there.falls.high, axis=1), np.maximum(there.falls.low, 0.0)
     at = np.take_along_axis
@@ -363,7 +371,7 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
         turned_high = turned_high + (max(more, 0.0) * high + min(more, 0.0) * 0.0)
         turned_low = turned_low + (max(more, 0.0) * low + min(more, 0.0) * high)
     half = Interval(
-        0.93 * 0.5 * nominal * (1.0 - nominal / 3.0) * _window(np.minimum, rooms.low, windows, 6),
+        0.93 * 0.5 * nominal * (1.0 - nominal / 3.0) * _least(rooms.low, windows, 6),
         0.5 * nominal * np.maximum.accumulate(rooms.high, axis=1),
     )
     asked = Interval(
@@ -381,7 +389,14 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
     ended = parts - np.argmax(alive[:, ::-1], axis=1)
     known = np.arange(parts) < ended[:, None]
     steady = cells.effect.low[:, None] * passing.least_rate > (1.0 + wheels.share.high * 1.2) * there.fading
-    sound = np.isfinite(way.low) & np.isfinite(way.high) & np.isfinite(passing.rate) & (passing.slowest >= assumed)
+    sound = (
+        np.isfinite(way.low)
+        & np.isfinite(way.high)
+        & np.isfinite(passing.rate)
+        & (passing.slowest >= assumed)
+    )
+    for each in (z, p, error, rooms):
+        sound &= np.isfinite(each.low) & np.isfinite(each.high)
     sound &= steady | (np.arange(parts) == 0)
     lost = ~(sound | ~known).all(axis=1) | (ended == parts) | (tau.high[:, 0] > 1.0)
     return Filled(
@@ -391,13 +406,19 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
         p=p,
         error=error,
         fall=Interval(
-            np.maximum(there.slides.low, 0.0) + motion.low - (1.0 + wheels.share.high) * np.maximum(coming.high, 0.0),
-            there.slides.high + motion.high - (1.0 + wheels.share.high) * np.minimum(coming.low, 0.0) + there.eases,
+            np.maximum(there.slides.low, 0.0)
+            + motion.low
+            - (1.0 + wheels.share.high) * np.maximum(coming.high, 0.0),
+            there.slides.high
+            + motion.high
+            - (1.0 + wheels.share.high) * np.minimum(coming.low, 0.0)
+            + there.eases,
         ),
         way=way.low,
         room=rooms,
         motion=motion.high,
         rate=passing.rate,
+        steep=steep,
         speed=passing.slowest,
         time=passing.passed,
         lost=lost,
@@ -407,13 +428,15 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
 def _cut(law: LawNumbers, passing: _Passing, windows: _Windows, observed: Array) -> tuple[Array, Array]:
     """Bound what z and p have more because the law takes no observed friction below 0.
 
-    The observer is shown w f_s, the torque less the motion of the wheel, which at first may be a little below 0: by m. The
-    law then takes more for friction, and z and p are larger by at most m/(1 + theta) and theta^2 m/(1 - theta^2). Where
-    more is observed it does so no more, and the two fade: docs/theory.md#bounds-of-ways-in.
+    The observer is shown the torque less the motion of the wheel, which at first may be a little below 0: by m. The law
+    then takes more for friction, and z and p are larger by at most m/(1 + theta) and theta^2 m/(1 - theta^2). Where
+    enough is observed it does so no more, and both fade: docs/theory.md#bounds-of-ways-in.
     """
     theta, wheels, there = law.theta, passing.wheels, passing.there
     share = 1.0 - wheels.effect + wheels.effect / (1.0 + wheels.share)  # of the torque, that is shown at rest
-    hidden = (np.maximum(there.slides.high, 0.0) + passing.motion.high + there.drag.high) / (1.0 + wheels.share.low)
+    hidden = (np.maximum(there.slides.high, 0.0) + passing.motion.high + there.drag.high) / (
+        1.0 + wheels.share.low
+    )
     shown = share.low * passing.torque.low - hidden
     begins = np.maximum.accumulate(np.maximum(-shown, 0.0), axis=1)
     enough = observed > (1.0 - theta) / theta * begins
@@ -426,7 +449,7 @@ def _cut(law: LawNumbers, passing: _Passing, windows: _Windows, observed: Array)
     return theta**since * z, theta**since * (p + since * theta * z)
 
 
-def _steepest(law: LawNumbers, wheels: Cells, passing: _Passing) -> Array:
+def _steepest(wheels: Cells, passing: _Passing) -> Array:
     """Return S q at most: by its bound while the slope is large, and by the largest slope and motion."""
     there, motion, speed = passing.there, passing.motion.high, passing.speed
     slope = there.slope
@@ -469,15 +492,15 @@ def _most(values: Array, first: Index, last: Index) -> Array:
     found = np.empty_like(values)
     for k in np.unique(size):
         there = np.maximum(
-            np.take_along_axis(table[k], first, 1), np.take_along_axis(table[k], np.maximum(last - 2**k + 1, 0), 1)
+            np.take_along_axis(table[k], first, 1),
+            np.take_along_axis(table[k], np.maximum(last - 2**k + 1, 0), 1),
         )
         found = np.where(size == k, there, found)
     return found
 
 
-def _window(function: np.ufunc, values: Array, windows: _Windows, back: int) -> Array:
+def _least(values: Array, windows: _Windows, back: int) -> Array:
     """Return the smallest of values from where a wheel was some samples ago to where it is."""
-    assert function is np.minimum
     return -_most(-values, windows.far[back], windows.own)
 
 

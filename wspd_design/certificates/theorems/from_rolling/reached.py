@@ -18,7 +18,7 @@ from wspd_design.certificates.theorems.from_rolling.support import Array
 from wspd_design.certificates.theorems.slip_band.arrival import INWARD, Asked
 
 if TYPE_CHECKING:
-    from wspd_design.certificates.theorems.from_rolling.settling import Sample
+    from wspd_design.certificates.theorems.from_rolling.braked_sample import Sample
 
 
 def arrived(sample: "Sample", asked: Asked) -> bool:

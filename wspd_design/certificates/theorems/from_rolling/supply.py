@@ -3,7 +3,7 @@
 Times are in samples from when the brake is demanded. The supply rises to the full pressure at a rate s, and from the
 first sample on the cylinder follows it with the rate tau: with u = t - 1
 
-    supply = U (1 - exp(-s t)),   T = U (1 - exp(-tau u) - b (exp(-s u) - exp(-tau u))),   b = tau exp(-s)/(tau - s).
+    supply = U (1 - exp(-s t)),   T = U (1 - exp(-tau u) - tau exp(-s) (exp(-s u) - exp(-tau u))/(tau - s)).
 
 At a torque T' = tau room rises with the supply rate and falls with the fill time, the room rises with both, and both
 have one maximum over the torque: docs/theory.md#bounds-of-ways-in.
@@ -17,6 +17,8 @@ from wspd_design.certificates.kernel.interval import Array
 
 SPARE = 1e-9  # relative, by which what is worked out here is made larger or smaller: rounding is far less
 LATER = 1e-3  # samples, by which times of a torque are moved so that the torque is passed for sure
+CLOSE = 1e-12  # per sample, of two rates that count as one
+HALVINGS = 40  # of the times between which the room is largest
 STEPS = 4  # of Newton's method, each from the time of a torque a little lower
 
 
@@ -30,9 +32,17 @@ class Filling(NamedTuple):
     def torque(self, time: Array) -> Array:
         """Torque [rad/s]."""
         u = np.maximum(time - 1.0, 0.0)
-        late = self.fill_rate * np.exp(-self.supply_rate) / (self.fill_rate - self.supply_rate)
-        slow, fast = np.exp(-self.supply_rate * u), np.exp(-self.fill_rate * u)
-        found: Array = self.full * (1.0 - fast - late * (slow - fast))
+        found: Array = self.full * (
+            -np.expm1(-self.fill_rate * u)
+            - self.fill_rate * np.exp(-self.supply_rate - self.fill_rate * u) * self._grown(u)
+        )
+        return found
+
+    def _grown(self, u: Array) -> Array:
+        """(exp((tau - s) u) - 1)/(tau - s), u where both rates are nearly the same."""
+        apart = self.fill_rate - self.supply_rate
+        close = np.abs(apart) < CLOSE
+        found: Array = np.where(close, u, np.expm1(apart * u) / np.where(close, 1.0, apart))
         return found
 
     def room(self, time: Array) -> Array:
@@ -47,12 +57,14 @@ class Filling(NamedTuple):
 
     @property
     def peak(self) -> Array:
-        """When the room is largest."""
-        late = self.fill_rate * np.exp(-self.supply_rate) / (self.fill_rate - self.supply_rate)
-        fast, slow = 1.0 - late, late - np.exp(-self.supply_rate)
-        ratio = -self.fill_rate * fast / (self.supply_rate * slow)
-        found: Array = 1.0 + np.log(np.maximum(ratio, 1.0)) / (self.fill_rate - self.supply_rate)
-        return found
+        """When the room is largest: it rises by what the supply does, less what the torque does."""
+        # log(a/b)/(a - b) is at most one over the smaller of two rates.
+        low, high = np.ones_like(self.fill_rate), 2.0 + 1.0 / np.minimum(self.fill_rate, self.supply_rate)
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            rises = self.full * self.supply_rate * np.exp(-self.supply_rate * middle) > self.rate(middle)
+            low, high = np.where(rises, middle, low), np.where(rises, high, middle)
+        return high
 
     def column(self) -> "Filling":
         """Return the same for arrays of times, a row for each cell."""

@@ -1,12 +1,12 @@
 """Decide about a proof of the way from rolling into a band for all numbers of a box, in cells.
 
-The box has all of friction and supply rate, and a share of the ranges of the other numbers. Steps divide it into groups,
-and each group into cells. Of each cell the valves are followed over the slip until its wheels are on the braking curve
-(:mod:`filling`, :mod:`catching`); there the wheels of all cells of a group are put together, and followed until they are
-in the ellipsoids of the band (:mod:`settling`).
+The box has all of friction and supply rate, and a share of the ranges of the other numbers. Steps divide it into
+groups, and each group into cells. The wheels of a cell are followed over the slip until they are on the braking curve
+(:mod:`filling`, :mod:`catching`); there those of all cells of a group are put together, and followed until they are in
+the ellipsoids of the band (:mod:`settling`).
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeAlias
@@ -18,7 +18,11 @@ from wspd_design.certificates.theorems.from_rolling.braked_wheel import SUPPLY, 
 from wspd_design.certificates.theorems.from_rolling.sample import law_numbers
 from wspd_design.certificates.theorems.from_rolling.settling import Plan, Settled, Start, settles
 from wspd_design.certificates.theorems.slip_band.arrival import Asked
+from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
+from wspd_design.certificates.theorems.slip_band.friction import FRICTION
 from wspd_design.certificates.theorems.slip_band.statement import LETTERS, NAMES, Cell, law_of
+from wspd_design.certificates.theorems.slip_band.way_in import around, asks_of, supply_rises
+from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.bounds import Bounds, Ends
 
 FORMAT = "wspd-ways-in/1"
@@ -109,7 +113,9 @@ def _group(written: object) -> Group:
         raise Refused("samples of a group are whole numbers")
     if not isinstance(halved, str) or not set(halved) <= set(EVERY) or len(halved) > len(EVERY):
         raise Refused("ranges that are halved at the end are unknown")
-    return Group(steps=_steps(written["steps"]), plan=Plan(first, float(_short(written["pull"])), last, halved))
+    return Group(
+        steps=_steps(written["steps"]), plan=Plan(first, float(_short(written["pull"])), last, halved)
+    )
 
 
 def _steps(written: object) -> str:
@@ -170,9 +176,7 @@ def speaks_about(problem: Problem) -> str:
     return ""
 
 
-def followed(
-    problem: Problem, proof: Proof, asked: Sequence[tuple[Cell, Asked]], work: Work
-) -> Followed:
+def followed(problem: Problem, proof: Proof, asked: Sequence[tuple[Cell, Asked]], work: Work) -> Followed:
     """Return what is shown of all wheels of the box, or refuse the proof.
 
     Parameters
@@ -211,6 +215,40 @@ def followed(
         supply=min(each.supply for each in shown),
         speed=min(each.speed for each in shown),
     )
+
+
+def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
+    """Return what decides about a proof and tells its numbers, those of the band among them."""
+
+    def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
+        from wspd_design.certificates.theorems.slip_band.computed_law import unlike
+
+        found = read(proof)
+        near = around(problem, found.share)
+        difference = unlike(near, law)
+        if difference:
+            raise Refused(difference)
+        of_band: Any = proof["band"]
+        if not isinstance(of_band, dict):
+            raise Refused("the proof of the band is no object")
+        band = checker_of_band(near, law)(of_band, work)
+        told = followed(near, found, asks_of(near, of_band), work)
+        supply_rises(near, of_band, told.supply, told.speed)
+        low, high = near.span(FRICTION)
+        return {
+            **band,
+            "share": float(found.share),
+            "friction low": low,
+            "friction high": high,
+            "largest slip": told.slip,
+            "time": told.time,
+            "above": told.above,
+            "below": told.below,
+            "supply": told.supply,
+            "speed": told.speed,
+        }
+
+    return check
 
 
 def _met(asked: Sequence[tuple[Cell, Asked]], box: Box) -> list[Asked]:

@@ -17,7 +17,6 @@ from wspd_design.certificates.kernel.arb import above, point
 from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.theorems.from_rolling import ways_in
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
 from wspd_design.certificates.theorems.slip_band.checker import inverse, steady_of
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION, SLOPES
@@ -187,8 +186,6 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
     """Return what decides about a proof and tells its numbers, those of the band among them."""
 
     def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
-        if proof.get("format") == ways_in.FORMAT:
-            return _of_cells(problem, law, proof, work)
         share, rows = read(proof)
         near = around(problem, share)
         low, high = _covered(near, rows)
@@ -212,38 +209,6 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
         return {**band, "share": float(share), "friction low": low, "friction high": high, **found}
 
     return check
-
-
-def _of_cells(
-    problem: Problem, law: Protection, proof: Mapping[str, Any], work: Work
-) -> dict[str, float]:
-    """Decide about a proof in cells, which ends in a band."""
-    from wspd_design.certificates.theorems.slip_band.computed_law import unlike
-
-    found = ways_in.read(proof)
-    near = around(problem, found.share)
-    difference = unlike(near, law)
-    if difference:
-        raise Refused(difference)
-    of_band: Any = proof["band"]
-    if not isinstance(of_band, dict):
-        raise Refused("the proof of the band is no object")
-    band = checker_of_band(near, law)(of_band, work)
-    told = ways_in.followed(near, found, asks_of(near, of_band), work)
-    supply_rises(near, of_band, told.supply, told.speed)
-    low, high = near.span(FRICTION)
-    return {
-        **band,
-        "share": float(found.share),
-        "friction low": low,
-        "friction high": high,
-        "largest slip": told.slip,
-        "time": told.time,
-        "above": told.above,
-        "below": told.below,
-        "supply": told.supply,
-        "speed": told.speed,
-    }
 
 
 def around(problem: Problem, share: Fraction = LARGEST_SHARE) -> Problem:
@@ -307,8 +272,7 @@ def supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spee
     found, vehicle = read_band(proof, len(windows)), problem.vehicle
     mu0, slowest = problem.span(FRICTION)[1], problem.span(SUPPLY)[0]
     supplies = [
-        max(each.supply for each in alike if each is not None)
-        for alike in zip(*found.cells, strict=True)
+        max(each.supply for each in alike if each is not None) for alike in zip(*found.cells, strict=True)
     ]
     lacking = 1.0 - supply
     for k in reversed(range(len(windows) - 1)):  # from the next slower window on
