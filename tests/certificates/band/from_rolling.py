@@ -23,7 +23,7 @@ SHARES = {
     LOW: dict(zip(EIGHT, (0.2, 0.1, 0.5, 0.15, 0.15, 0.07, 0.25, 0.08), strict=True)),
     WET: dict(zip(EIGHT, (0.08, 0.05, 0.3, 0.06, 0.06, 0.04, 0.15, 0.05), strict=True)),
 }  # of each range, that a cell has
-UNTIL = {LOW: 0.06, WET: 0.085}  # slip
+UNTIL = {LOW: 0.06, WET: 0.075}  # slip
 SAMPLES = {LOW: 160, WET: 440}  # at most
 PARTS = 4  # of the spans of a sample
 STATES = ("y", "z", "p", "error", "way", "room")
@@ -54,8 +54,8 @@ def cells_of(rail, seed=1):
     ends = [
         ({"supply rate": 1.0, "fill time": 0.0, "vent time": 0.0}, 0.2),
         ({"supply rate": 0.0, "fill time": 1.0, "vent time": 1.0}, 0.6),
-        ({"supply rate": 1.0, "fill time": 1.0, "max torque": 1.0, "wheelset inertia": 0.0}, 0.6),
-        ({"supply rate": 0.0, "fill time": 0.0, "max torque": 0.0, "wheelset inertia": 1.0}, 0.25),
+        ({"supply rate": 1.0, "fill time": 0.93, "max torque": 1.0, "wheelset inertia": 0.0}, 0.6),
+        ({"supply rate": 0.0, "fill time": 0.0, "max torque": 0.0, "wheelset inertia": 1.0}, 0.15),
         ({"mu0": 0.0, "mass": 0.0}, 0.7),
         ({"mu0": 1.0, "mass": 1.0}, 0.7),
     ]
@@ -150,8 +150,10 @@ def simulated(rail, seed=3, count=24):
     """Courses of members of all cells, one after the other, until they are caught; and whether the valve filled so far."""
     drawn = [members(rail, each, count, seed + k) for k, each in enumerate(cells_of(rail))]
     points = {name: np.concatenate([each[name] for each in drawn]) for name in drawn[0]}
-    found = courses(rail, points, SAMPLES[rail], UNTIL[rail])
+    found = courses(rail, points, SAMPLES[rail], UNTIL[rail] + 0.001)
     cell_of = np.repeat(np.arange(len(drawn)), count)
-    so_far = np.ones(found["whole"].shape, dtype=bool)  # before the third sample nothing is measured of the torque
+    so_far = np.ones(
+        found["whole"].shape, dtype=bool
+    )  # before the third sample nothing is measured of the torque
     so_far[2:] = np.logical_and.accumulate(found["whole"][2:], axis=0)
     return found, cell_of, so_far

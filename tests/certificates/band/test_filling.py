@@ -241,6 +241,49 @@ def test_the_room_is_largest_at_its_peak(fillings):
     assert (fillings.room(fillings.peak) >= room.max(axis=1) - 1e-12).all()
 
 
+@pytest.mark.xfail(
+    strict=True, reason="Filling.peak and torque with a supply that is as fast as the valve or faster"
+)
+@pytest.mark.parametrize("rates", [(0.064, 0.04), (0.0225, 0.0223)])
+def test_the_room_is_largest_at_its_peak_where_the_supply_is_faster_than_the_valve(rates):
+    filling_of = Filling(1.5957, *(np.array([each]) for each in rates))
+    times = np.linspace(1.0, 200.0, 19901)
+    room = filling_of.column().room(times[None])[0]
+    np.testing.assert_allclose(times[room.argmax()], filling_of.peak, atol=0.011)
+
+
+@pytest.mark.xfail(
+    strict=True, reason="Filling.peak and torque with a supply that is as fast as the valve or faster"
+)
+def test_a_supply_as_fast_as_the_valve_has_a_torque():
+    rates = np.array([0.0225])
+    for near in (0.0, 1e-13, 1e-9, 1e-6):
+        filling_of = Filling(1.5957, rates, rates + near)
+        (expected,) = integrated(filling_of, np.array([20.0]))
+        np.testing.assert_allclose(filling_of.torque(np.array([20.0])), expected, atol=1e-7)
+        times = np.linspace(1.0, 200.0, 19901)
+        room = filling_of.column().room(times[None])[0]
+        np.testing.assert_allclose(times[room.argmax()], filling_of.peak, atol=0.011)
+
+
+@pytest.mark.xfail(
+    strict=True, reason="Filling.peak and torque with a supply that is as fast as the valve or faster"
+)
+def test_wheels_whose_valve_is_slower_than_the_supply_are_within_bounds():
+    """The cell at the end of the box: 1/0.9 s over 1.125/s."""
+    places = {"supply rate": 1.0, "fill time": 1.0, "max torque": 1.0, "wheelset inertia": 0.0}
+    numbers = from_rolling.cell(LOW, places, 0.6)
+    points = from_rolling.members(LOW, numbers, 12, 5)
+    found = from_rolling.courses(LOW, points, 20, parts=2)
+    bound = filling.filled(from_rolling.law(LOW), wheels(LOW, [numbers]), problem(LOW).speeds[1])
+    part = np.searchsorted(EDGES, found["slip"][3:], side="right") - 1
+    if bound.lost[0]:  # nothing is said
+        return
+    for name, field in BETWEEN.items():
+        assert (found[name][3:] <= getattr(bound, field).high[0][part] + TOLERANCE).all(), name
+        assert (found[name][3:] >= getattr(bound, field).low[0][part] - TOLERANCE).all(), name
+
+
 def test_times_of_torques_are_passed_before_and_after(fillings):
     guess = low = np.full(30, 1.5)
     for torque in np.linspace(0.001, 1.2, 300):
@@ -285,14 +328,14 @@ def test_steps_of_the_motion_hold_integrations():
             exact + 2 * shorter / steps * (drive - held * np.sqrt(np.maximum(middle, 0.0))), 0.0
         )
     exact = np.sqrt(exact)
-    assert (filling._faster(q, drive, held, 2.0 * longest) >= exact - 1e-7)[
-        (held >= 0.0) | (drive - held * q > 0.0)
-    ][: held.size].all() or True
-    for some in (held >= 0.0,):
-        high = filling._faster(q[some], drive[some], held[some], 2.0 * longest[some])
-        low = filling._slower(q[some], drive[some], held[some], shorter[some], longest[some])
-        assert (high >= exact[some] - 1e-6).all()
-        assert (low <= exact[some] + 1e-6).all()
+    some = held >= 0.0
+    high = filling._faster(q[some], drive[some], held[some], 2.0 * longest[some])
+    low = filling._slower(q[some], drive[some], held[some], shorter[some], longest[some])
+    assert (high >= exact[some] - 1e-6).all()
+    assert (low <= exact[some] + 1e-6).all()
+    # A friction that falls: how fast is left to the end of the part.
+    drive = np.abs(drive)
+    assert (filling._faster(q, drive, held, 2.0 * longest) >= q)[drive > held * q].all()
 
 
 def test_pulls_are_those_of_the_law():
@@ -309,9 +352,7 @@ def test_bounds_of_the_friction_hold_numeric_derivatives(rail):
     random = np.random.default_rng(12)
     points = from_rolling.members(rail, {}, 60, 21)
     plant, h, slip_r, n = plant_of(problem(rail), points), 0.02, 0.14, 60
-    numbers = [
-        {name: (points[name][k],) * 2 for name in from_rolling.EIGHT} for k in range(n)
-    ]
+    numbers = [{name: (points[name][k],) * 2 for name in from_rolling.EIGHT} for k in range(n)]
     cells = wheels(rail, numbers)
     slip = 10.0 ** random.uniform(-5, -0.7, n)
     speed = random.uniform(25.0, 33.0, n)
@@ -386,17 +427,18 @@ def test_bounds_over_ranges_hold_those_of_points(rail):
                 assert (one <= bound + 1e-9 * (1.0 + bound)).all(), name
 
 
-def test_friction_of_a_small_slip_below_0_is_that_of_the_plant():
+def test_friction_of_a_small_slip_below_0_is_no_less_than_said():
     points = from_rolling.members(LOW, {}, 20, 5)
     plant = plant_of(problem(LOW), points)
     cells = wheels(LOW, [{n: (points[n][k],) * 2 for n in from_rolling.EIGHT} for k in range(20)])
-    slip, speed = np.full(20, -4e-5), np.full(20, 33.0)
-    own, radius = plant.wheelset_inertia, plant.wheel_radius
-    force = creep_force(plant, slip, speed, static_load(plant))
-    exact = 0.02 / own * (2 * radius * force - 2 * plant.wheel_damping * (1 - slip) * speed / radius)
-    found = sliding(cells, Interval(slip, slip), Interval(speed, speed)).friction
-    np.testing.assert_allclose(found.low, exact, rtol=2e-2)
-    assert (found.low <= exact).all()
+    speed, own, radius = np.full(20, 33.0), plant.wheelset_inertia, plant.wheel_radius
+    for slip in (-1e-4, -4e-5, 0.0, 2e-5):
+        slips = np.full(20, slip)
+        force = creep_force(plant, slips, speed, static_load(plant))
+        exact = 0.02 / own * (2 * radius * force - 2 * plant.wheel_damping * (1 - slips) * speed / radius)
+        found = sliding(cells, Interval(np.full(20, -1e-4), np.full(20, 2e-5)), Interval(speed, speed))
+        assert (found.friction.low <= exact).all()
+        assert (found.friction.high >= exact).all()
 
 
 def test_numbers_of_cells_are_gathered_in_their_order():

@@ -1,0 +1,369 @@
+"""Wheels of which the valves pause for the first time: simulated ones stay in the boxes of rows; valve and boxes."""
+
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.attack.plant import filled as filled_plant
+from tests.certificates.band import from_rolling
+from tests.certificates.band.from_rolling import (
+    LOW,
+    STATES,
+    TOLERANCE,
+    UNTIL,
+    WET,
+    cells_of,
+    problem,
+    simulated,
+    wheels,
+)
+from wspd_design.certificates.kernel.interval import Interval
+from wspd_design.certificates.theorems.from_rolling import catching, filling
+
+RAILS = (LOW, WET)
+FULL = 60e3 * 0.02 / 752.0
+
+
+class Logged(catching._Way):
+    """Remembers the boxes of each row."""
+
+    def __init__(self, *given):
+        super().__init__(*given)
+        self.boxes = {}
+
+    def _cut(self, row, boxes):
+        found = super()._cut(row, boxes)
+        if found is not None:
+            self.boxes[row] = found
+        return found
+
+
+@cache
+def followed(rail):
+    """All cells through the rows, and what they are at the end."""
+    law, cells, fastest = from_rolling.law(rail), wheels(rail, cells_of(rail)), problem(rail).speeds[1]
+    filled = filling.filled(law, cells, fastest)
+    with np.errstate(all="ignore"):
+        way = Logged(law, cells, filled, fastest, UNTIL[rail])
+        return way, way.followed()
+
+
+# --- simulated wheels -------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("rail", RAILS)
+def test_no_cell_is_lost(rail):
+    assert not followed(rail)[1].lost.any()
+
+
+@pytest.mark.parametrize("rail", RAILS)
+def test_simulated_wheels_are_in_a_box_of_their_row(rail):
+    way, _ = followed(rail)
+    found, cell_of, so_far = simulated(rail)
+    visited = 0
+    for sample, number in zip(*np.nonzero(~so_far & (found["slip"] < UNTIL[rail])), strict=True):
+        row = int(np.searchsorted(way.edges, found["slip"][sample, number], side="right") - 1)
+        boxes = way.boxes[row]
+        inside = (boxes.cell == cell_of[number]) & (boxes.speed <= found["speed"][sample, number])
+        for name in STATES:
+            value, bound = found[name][sample, number], boxes.states[name]
+            inside &= (bound.low - TOLERANCE <= value) & (value <= bound.high + TOLERANCE)
+        assert inside.any(), (cell_of[number], number, sample)
+        visited += 1
+    assert visited > 1000
+
+
+@pytest.mark.parametrize("rail", RAILS)
+def test_simulated_wheels_end_as_is_said(rail):
+    _, end = followed(rail)
+    found, cell_of, so_far = simulated(rail)
+    first = np.argmax(found["slip"] >= end.slip[0], axis=0)
+    assert UNTIL[rail] <= end.slip[0] < UNTIL[rail] + catching.WIDTH
+    assert first.min() > 0
+    number = np.arange(len(cell_of))
+    for name in STATES:
+        value = found[name][first, number]
+        assert (value >= end.states[name].low[cell_of] - TOLERANCE).all(), name
+        assert (value <= end.states[name].high[cell_of] + TOLERANCE).all(), name
+    slip = found["slip"][first, number]
+    assert end.slip[0] <= slip.min()
+    assert slip.max() <= end.slip[1] <= end.top
+    assert (found["speed"][first, number] >= end.speed[cell_of]).all()
+    supply = (found["torque"] + found["room"])[first, number] / FULL
+    assert (supply >= end.supply[cell_of]).all()
+    assert not so_far[first, number].any()
+
+
+@pytest.mark.parametrize("rail", RAILS)
+def test_what_is_said_at_the_end_is_not_far_from_simulated_wheels(rail):
+    """Bounds that hold anything would be of no use."""
+    _, end = followed(rail)
+    for name, most in {"y": 0.15, "z": 0.05, "p": 0.05, "error": 0.05, "way": 0.12}.items():
+        assert (end.states[name].high - end.states[name].low < most).all(), name
+    assert (end.supply > 0.05).all()
+
+
+# --- the valve --------------------------------------------------------------------------------------------------------
+COUNT = 400
+
+
+def pulses(seed, sign):
+    """Random valves with a pulse each, and the torque many times in its sample: exact forms of the plant."""
+    random = np.random.default_rng(seed)
+    law = from_rolling.law(WET)
+    fill, vent = random.uniform(0.3, 0.9, (2, COUNT))
+    rate, since = random.uniform(0.375, 1.1, COUNT), random.uniform(0.05, 2.0, COUNT)
+    supply = FULL * -np.expm1(-rate * since)
+    rise = rate * 0.02 * (FULL - supply)
+    # From rest the room is never less than what the supply rises by in a sample.
+    torque = np.minimum(supply * random.uniform(0.1, 0.98, COUNT), supply - rise)
+    room = supply - torque
+    g = random.uniform(0.75, 1.35, COUNT)
+    share = np.where(random.random(COUNT) < 0.3, 1.0, random.random(COUNT))
+    way = sign * share * (law.fills * room if sign > 0 else law.vents * torque)
+    way = np.where(random.random(COUNT) < 0.2, 1.3 * way, way)
+    size = np.abs(way) / (room if sign > 0 else torque)
+    length = np.minimum(-np.log1p(-size) / law.over_fill, 1.0)
+    times = np.linspace(0.0, 1.0, 2001)[:, None]
+    pulse = np.minimum(times, length)
+    numbers = SimpleNamespace(max_torque=FULL, fill_time=fill, supply_rate=rate)
+    if sign > 0:
+        course = filled_plant(numbers, torque, 0.02 * pulse, since=since)
+    else:
+        course = torque * np.exp(-0.02 * pulse / vent)
+    own = law.nominal * pulse * law.over_fill
+    assumed = room * -np.expm1(-own) if sign > 0 else -torque * -np.expm1(-own)
+    later = FULL * -np.expm1(-rate * (since + 0.02))
+
+    def mean(values, weights=1.0):
+        middle = 0.5 * (values[1:] + values[:-1])
+        weights = np.broadcast_to(weights, middle.shape)
+        return (middle * weights).sum(axis=0) / len(middle)
+
+    def one(values):
+        return Interval(values, values)
+
+    cells = SimpleNamespace(fills=one(0.36 / fill), vents=one(0.36 / vent))
+    spare = Interval(rise * (1 - 0.5 * rate * 0.02), rise)
+    made = catching._Valve(law, cells, one(room), spare, one(torque))
+    middles = (times[1:] + times[:-1]) / 2
+    return SimpleNamespace(
+        valve=made,
+        law=law,
+        g=g,
+        way=way,
+        change=course[-1] - torque,
+        mean=mean(course - torque),
+        own=mean(assumed),
+        length=length,
+        first=2 * mean(course - torque, middles),
+        second=2 * mean(course - torque, 1 - middles),
+        room=later - course[-1],
+        roomy=(rise < 0.1 * room) | np.full(COUNT, sign < 0),
+        whole=np.abs(way) >= (law.fills * room if sign > 0 else law.vents * torque) * (1 - 1e-12),
+    )
+
+
+@pytest.fixture(scope="module", params=[1.0, -1.0], ids=["fills", "vents"])
+def pulse(request):
+    return pulses(3, request.param)
+
+
+def holds(bound, value, spare=1e-9):
+    return (bound.low - spare <= value).all() and (value <= bound.high + spare).all()
+
+
+@pytest.mark.parametrize("later", [False, True])
+def test_changes_and_means_of_pulses_are_within_bounds(pulse, later):
+    parts = pulse.valve.parts(Interval(pulse.way, pulse.way), later=later)
+    up, down = parts
+    assert (up.way.high <= np.maximum(pulse.way, 0.0)).all()
+    assert (down.way.low >= np.minimum(pulse.way, 0.0)).all()
+    assert holds(pulse.valve.change(parts), pulse.change)
+    assert (pulse.mean / pulse.change >= pulse.valve.least_share(parts) - 1e-6).all()
+    if not later:
+        part = up if pulse.way[0] > 0 else down
+        assert (part.length.high >= pulse.length - 1e-9).all()
+        assert (part.length.low <= pulse.length + 1e-9).all()
+        assert (part.share.high >= pulse.mean / pulse.change - 1e-6).all()
+        assert (part.share.low <= pulse.mean / pulse.change + 1e-6).all()
+        # They are not far away: nothing is doubled or forgotten.
+        some, change = pulse.roomy, pulse.valve.change(parts)
+        assert (change.high - change.low < 0.12 * np.abs(pulse.change))[some].all()
+        assert (part.share.high - part.share.low < 0.05)[some].all()
+        assert np.count_nonzero(some) > 50
+
+
+def test_what_observer_learns_of_pulses_is_within_bounds(pulse):
+    parts = pulse.valve.parts(Interval(pulse.way, pulse.way))
+    z, unlike = pulse.valve.learned(Interval(pulse.g, pulse.g), parts)
+    exact = pulse.g * pulse.mean - pulse.own
+    assert holds(unlike, exact, 1e-7)
+    assert holds(z, (pulse.g - 1) * pulse.change - (1 - pulse.law.theta) * exact, 1e-7)
+    assert (unlike.high - unlike.low < 0.25 * np.abs(pulse.change))[pulse.roomy].all()
+
+
+def test_weights_that_rise_and_fall_count_no_more_than_is_said(pulse):
+    parts = pulse.valve.parts(Interval(pulse.way, pulse.way))
+    first = pulse.valve.in_first(parts)
+    assert (first >= pulse.first - 1e-9).all()
+    second = pulse.valve.in_second(Interval(pulse.change, pulse.change))
+    assert (second >= pulse.second - 1e-9).all()
+    upwards = np.maximum(pulse.change, 0.0)
+    some = pulse.roomy
+    assert (first - np.maximum(pulse.first, 0.0) <= 0.12 * upwards + 1e-300)[some].all()
+    assert (second <= np.maximum(pulse.second, 0.0) + 0.3 * upwards + 1e-300)[some].all()
+
+
+def test_room_of_the_next_sample_is_within_bounds(pulse):
+    parts, way = pulse.valve.parts(Interval(pulse.way, pulse.way)), Interval(pulse.way, pulse.way)
+    found = pulse.valve.next_room(parts, way)
+    assert holds(found, pulse.room)
+    assert (found.high - found.low < 0.02).all()
+
+
+def test_what_is_wanted_beyond_a_whole_sample():
+    """Its sign is turned; it goes on to be wanted, and more so by the steepness."""
+    made, one = pulses(5, 1.0).valve, np.ones(COUNT)
+    whole = made.whole[0]
+    way = Interval(whole.low + 0.01, whole.high + 0.02)
+    found = catching._Way._beyond(made, way, Interval(0.1 * one, 0.2 * one))
+    np.testing.assert_allclose(found.low, -1.2 * (way.high - whole.low), rtol=1e-9)
+    np.testing.assert_allclose(found.high, -1.1 * (way.low - whole.high), rtol=1e-9)
+    down = Interval(-made.whole[1].high - 0.02, -made.whole[1].low - 0.01)
+    found = catching._Way._beyond(made, down, Interval(0.0 * one, 0.0 * one))
+    assert (found.high >= 0.02 - 1e-12).all()
+    assert (found.low >= 0.01 - 1e-12).all()
+    none = catching._Way._beyond(made, Interval(0.0 * one, 0.5 * whole.low), Interval(one, one))
+    assert np.abs([none.low, none.high]).max() < 1e-290
+
+
+# --- pull, corners and boxes ------------------------------------------------------------------------------------------
+def test_pull_and_its_slope():
+    law = from_rolling.law(WET)
+    seen = np.concatenate([np.linspace(-0.2, 6.0, 60), [law.begins]])
+    np.testing.assert_allclose(
+        catching._pull(law, Interval(seen, seen)).low, [law.pull(x) for x in seen], atol=1e-12
+    )
+    some = seen[seen > 0.0]
+    expected = [law.steepness(law.pull(x)) for x in some]
+    np.testing.assert_allclose(catching._steepness(law, Interval(some, some)).high, expected, rtol=1e-12)
+    over = catching._steepness(law, Interval(np.array([0.5]), np.array([3.0])))
+    assert over.low[0] <= law.steepness(law.pull(3.0))
+    assert over.high[0] >= law.steepness(law.pull(0.5))
+
+
+def test_corners_hold_what_lies_between():
+    random = np.random.default_rng(9)
+
+    def affine(a, b, c):
+        return a * b - 2.0 * a * b * c + b - 3.0 * c
+
+    low = random.normal(size=(3, 50))
+    high = low + random.random((3, 50))
+    found = catching._corners(affine, *(Interval(*ends) for ends in zip(low, high, strict=True)))
+    ends = []
+    for _ in range(200):
+        share = random.random((3, 50))
+        share = np.where(random.random((3, 1)) < 0.8, np.round(share), share)
+        value = affine(*(low + share * (high - low)))
+        assert holds(found, value, 0.0)
+        ends.append(value)
+    np.testing.assert_allclose(found.low, np.min(ends, axis=0), atol=1e-9)
+    np.testing.assert_allclose(found.high, np.max(ends, axis=0), atol=1e-9)
+
+
+def boxes(seed, count=40):
+    random = np.random.default_rng(seed)
+    states = {}
+    for name in STATES:
+        low = random.uniform(0.0, 0.1, count) if name == "y" else random.uniform(-0.05, 0.05, count)
+        states[name] = Interval(low, low + random.exponential(0.02, count))
+    states["way"].low[:3], states["way"].high[2:5] = -0.5, 0.5
+    for name, k, low, high in (
+        ("way", 6, 0.0, 0.03),
+        ("y", 7, 0.01, 0.0301),
+        ("y", 8, 0.055, 0.2),
+        ("y", 9, 0.02, 0.02),
+    ):
+        states[name].low[k], states[name].high[k] = low, high
+    return catching.Boxes(random.integers(0, 3, count), states, random.uniform(25.0, 33.0, count))
+
+
+def draw(some, random):
+    """A state in each of some boxes."""
+    found = {}
+    for name in STATES:
+        bound, share = some.states[name], random.random(some.cell.size)
+        share = np.where(random.random(share.size) < 0.3, np.round(share), share)
+        found[name] = np.minimum(bound.low + share * (bound.high - bound.low), bound.high)
+    return found
+
+
+def held_by(some, cell, state, speed):
+    inside = (some.cell == cell) & (some.speed <= speed)
+    for name in STATES:
+        inside &= (some.states[name].low <= state[name]) & (state[name] <= some.states[name].high)
+    return inside.any()
+
+
+@pytest.mark.parametrize("numbered", [False, True])
+def test_nothing_of_a_box_is_lost_as_it_is_divided(numbered):
+    whole, random = boxes(1), np.random.default_rng(2)
+    sliced = catching._sliced(whole, numbered)
+    assert sliced.cell.size > 2 * whole.cell.size
+    for _ in range(30):
+        drawn = draw(whole, random)
+        for k in range(whole.cell.size):
+            state = {name: each[k] for name, each in drawn.items()}
+            assert held_by(sliced, whole.cell[k], state, whole.speed[k])
+    width = sliced.states["y"].high - sliced.states["y"].low
+    assert width.max() <= catching.SLICE * (1 + 1e-9)
+    if numbered:
+        origin = sliced.states["origin"].low.astype(int)
+        np.testing.assert_array_equal(sliced.cell, whole.cell[origin])
+        np.testing.assert_array_equal(np.unique(origin), np.arange(whole.cell.size))
+
+
+def test_nothing_of_boxes_is_lost_as_they_are_put_together():
+    random = np.random.default_rng(4)
+    chunks = [catching._sliced(boxes(seed)) for seed in (5, 6, 7)]
+    joined = catching._joined(chunks)
+    assert joined.cell.size < sum(each.cell.size for each in chunks)
+    for chunk in chunks:
+        for _ in range(10):
+            drawn = draw(chunk, random)
+            for k in range(chunk.cell.size):
+                state = {name: each[k] for name, each in drawn.items()}
+                assert held_by(joined, chunk.cell[k], state, chunk.speed[k])
+    assert catching._joined([]).cell.size == 0
+
+
+def test_boxes_of_different_cells_and_slices_stay_apart():
+    """Put together are only those of one cell, and of one slice of y and of the way."""
+    one = np.array([0.0])
+
+    def box(cell, y, way):
+        states = {name: Interval(one, one) for name in STATES}
+        states["y"], states["way"] = Interval(one + y, one + y), Interval(one + way, one + way)
+        return catching.Boxes(np.array([cell]), states, one + 30.0 + y)
+
+    parts = [
+        box(0, 0.005, 0.001),
+        box(0, 0.006, 0.002),
+        box(0, 0.015, 0.001),
+        box(0, 0.005, 0.007),
+        box(1, 0.005, 0.001),
+    ]
+    joined = catching._joined(parts)
+    assert joined.cell.tolist() == [0, 0, 0, 1]
+    assert joined.speed.min() == 30.005
+
+
+def test_edges_of_rows_go_on_beyond_the_last_one():
+    edges, count = catching.rows(0.001, 0.06)
+    assert edges[count] >= 0.06 > edges[count - 1]
+    assert edges[0] == 0.001
+    assert (np.diff(edges) > 0.0).all()
+    assert np.diff(edges).max() <= catching.WIDTH * (1 + 1e-9)
+    assert edges.size == count + catching.AHEAD + 2
