@@ -6,7 +6,6 @@ from functools import cache
 import numpy as np
 
 import wspd_design as wd
-from tests.attack.plant import resistance
 from tests.certificates.band.conftest import problem_of
 from tests.certificates.band.sampled_runs import BESIDE, BOX, Law, rolling, supplied
 from tests.certificates.band.test_rolling_sample import over_samples
@@ -49,7 +48,7 @@ def cell(rail, places, scale=1.0):
 
 
 def cells_of(rail, seed=1):
-    """Cells at ends of the box, in which supply and valves are fast or slow, and some at random."""
+    """Cells at ends of the box, in which supply and valves are fast or slow, some at random, and single wheels."""
     random = np.random.default_rng(seed)
     ends = [
         ({"supply rate": 1.0, "fill time": 0.0, "vent time": 0.0}, 0.2),
@@ -60,17 +59,34 @@ def cells_of(rail, seed=1):
         ({"mu0": 1.0, "mass": 1.0}, 0.7),
     ]
     some = [({name: float(random.random()) for name in EIGHT}, 0.8) for _ in range(2)]
-    return [cell(rail, places, scale) for places, scale in (*ends, *some)]
+    # Of one wheel each: bounds are as close to it as they can be.
+    single = [
+        {name: float(random.random()) if k < 2 else float(random.integers(2)) for name in EIGHT}
+        for k in range(6)
+    ]
+    # No valve that is slower than the supply.
+    single = [(each | {"fill time": min(each["fill time"], 0.9)}, 0.0) for each in single]
+    return [cell(rail, places, scale) for places, scale in (*ends, *some, *single)]
+
+
+FASTEST = {"max torque": 1, "wheelset inertia": 0, "fill time": 0, "supply rate": 1}
+"""Ends at which the torque moves a wheel most."""
 
 
 def members(rail, numbers, count, seed=0):
-    """Numbers of wheels of a cell, half of them at corners."""
+    """Numbers of wheels of a cell, half of them at corners, of which the first have the fastest or the slowest torque."""
     random, points = np.random.default_rng(seed), {}
-    corners = np.arange(count) < count // 2
+    number = np.arange(count)
+    corners, extreme = number < count // 2, number < min(8, count // 2)
     for name in (*BOX, *BESIDE):
         low, high = numbers.get(name, problem(rail).span(name))
         share = random.random(count)
-        points[name] = low + np.where(corners, np.round(share), share) * (high - low)
+        share = np.where(corners, np.round(share), share)
+        if name in FASTEST:
+            share = np.where(extreme, (number + FASTEST[name] + 1) % 2, share)
+        elif name in ("mass", "mu0", "wheel radius"):
+            share = np.where(extreme, number // (4 if name == "wheel radius" else 2) % 2, share)
+        points[name] = low + share * (high - low)
     points["speed"] = np.full(count, float(problem(rail).speeds[1]))
     return points
 
@@ -146,8 +162,8 @@ def wheels(rail, numbers):
 
 
 @cache
-def simulated(rail, seed=3, count=24):
-    """Courses of members of all cells, one after the other, until they are caught; and whether the valve filled so far."""
+def simulated(rail, seed=3, count=16):
+    """Courses of members of all cells until they are caught, their cells, and whether the valve filled so far."""
     drawn = [members(rail, each, count, seed + k) for k, each in enumerate(cells_of(rail))]
     points = {name: np.concatenate([each[name] for each in drawn]) for name in drawn[0]}
     found = courses(rail, points, SAMPLES[rail], UNTIL[rail] + 0.001)

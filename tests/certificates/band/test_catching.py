@@ -103,6 +103,79 @@ def test_what_is_said_at_the_end_is_not_far_from_simulated_wheels(rail):
     assert (end.supply > 0.05).all()
 
 
+# --- a sample of single wheels ---------------------------------------------------------------------------------------
+@cache
+def single(rail, count=36):
+    """What a sample makes of the exact state of a wheel that is a cell of its own: the most that can be told from it."""
+    points = from_rolling.members(rail, {}, count, 17)
+    points["fill time"] = np.minimum(points["fill time"], 0.88)  # no valve that is slower than the supply
+    numbers = [{name: (float(points[name][k]),) * 2 for name in from_rolling.EIGHT} for k in range(count)]
+    until = UNTIL[rail] + 0.02
+    found = from_rolling.courses(rail, points, from_rolling.SAMPLES[rail], until)
+    so_far = np.logical_and.accumulate(found["whole"] | (np.arange(len(found["slip"])) < 2)[:, None], axis=0)
+    slowest = found["speed"].min() / (1.0 - catching.SLOWER) - 0.05
+    shape = count, filling.EDGES.size - 1
+    filled = SimpleNamespace(
+        lost=np.zeros(count, dtype=bool),
+        opens=np.ones(shape, dtype=bool),
+        alive=np.ones(shape, dtype=bool),
+        speed=np.full(shape, slowest),
+    )
+    law, cells, fastest = from_rolling.law(rail), wheels(rail, numbers), problem(rail).speeds[1]
+    seen = {name: [] for name in (*STATES, "friction", "lost", "inside", "number")}
+    with np.errstate(all="ignore"):
+        way = catching._Way(law, cells, filled, fastest, UNTIL[rail])
+        way.rate = (found["room"] * 0.02 / points["fill time"]).max(axis=0)
+        friction = way._friction
+
+        def heard(row, boxes, *given):
+            result = friction(row, boxes, *given)
+            seen["heard"] = result[0]
+            return result
+
+        way._friction = heard
+        for row in range(way.count):
+            # Late ones that still fill as well: what is wanted beyond a whole sample goes on to be wanted.
+            here = (found["slip"] >= way.edges[row]) & (found["slip"] < way.edges[row + 1])
+            here[:16] &= ~so_far[:16]
+            sample, number = np.nonzero(here[:-1])
+            if not number.size:
+                continue
+            states = {name: Interval(*(found[name][sample, number],) * 2) for name in STATES}
+            way.pending.clear()
+            way.lost[:] = False
+            way._sample(row, catching.Boxes(number, states, found["speed"][sample, number]))
+            change = found["friction"][sample + 1, number] - found["friction"][sample, number]
+            bound = seen["heard"]
+            seen["friction"] += [(bound.low - change).max(), (change - bound.high).max()]
+            for n, j in zip(sample, number, strict=True):
+                seen["lost"].append(bool(way.lost[j]))
+                following = int(np.searchsorted(way.edges, found["slip"][n + 1, j], side="right") - 1)
+                boxes = [each.kept(each.cell == j) for each in way.pending[following]]
+                inside = False
+                for each in boxes:
+                    good = each.speed <= found["speed"][n + 1, j]
+                    for name in STATES:
+                        value = found[name][n + 1, j]
+                        good &= (each.states[name].low <= value + TOLERANCE) & (
+                            value <= each.states[name].high + TOLERANCE
+                        )
+                    inside |= good.any()
+                seen["inside"].append(inside)
+                seen["number"].append((row, int(n), int(j)))
+    return seen
+
+
+@pytest.mark.parametrize("rail", RAILS)
+def test_a_sample_of_a_single_wheel_holds_its_next_state(rail):
+    seen = single(rail)
+    told = zip(seen["number"], seen["inside"], seen["lost"], strict=True)
+    assert [each for each, inside, lost in told if not inside and not lost] == []
+    assert np.count_nonzero(seen["inside"]) > 400
+    assert np.mean(seen["lost"]) < 0.6
+    assert max(seen["friction"]) < TOLERANCE
+
+
 # --- the valve --------------------------------------------------------------------------------------------------------
 COUNT = 400
 
