@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 
 import wspd_design as wd
+from tests.attack.plant import creep_force, resistance, static_load
 from tests.certificates.band.conftest import problem_of
 from tests.certificates.band.sampled_runs import BESIDE, BOX, Law, rolling, supplied
 from tests.certificates.band.test_rolling_sample import over_samples
@@ -74,7 +75,7 @@ FASTEST = {"max torque": 1, "wheelset inertia": 0, "fill time": 0, "supply rate"
 
 
 def members(rail, numbers, count, seed=0):
-    """Numbers of wheels of a cell, half of them at corners, of which the first have the fastest or the slowest torque."""
+    """Numbers of wheels of a cell, half of them at corners, the first with the fastest or slowest torque."""
     random, points = np.random.default_rng(seed), {}
     number = np.arange(count)
     corners, extreme = number < count // 2, number < min(8, count // 2)
@@ -132,7 +133,7 @@ def courses(rail, points, samples, until=np.inf, parts=PARTS):
                 "torque": unit * seen,
                 "change": unit * (torque / pads - seen),
                 "friction": friction,
-                "motion": (runs.speed * (1.0 - slip) / radius - runs.wheel),
+                **moving(plant, law, runs, g * seen * unit),
             }
         )
         runs = replace(
@@ -147,6 +148,20 @@ def courses(rail, points, samples, until=np.inf, parts=PARTS):
         if (found[-1]["slip"] > until).all():
             break
     return {name: np.array([each[name] for each in found]) for name in found[0]}
+
+
+def moving(plant, law, runs, pulled):
+    """Motion q at the moment of a sample, and S q, by a complex step."""
+    radius, unit = plant.wheel_radius, law.h / plant.wheelset_inertia
+    slip = 1.0 - radius * runs.wheel / runs.speed
+    force = creep_force(plant, slip + 1e-30j, runs.speed, static_load(plant))
+    damping = 2.0 * plant.wheel_damping * unit
+    friction = 2.0 * radius * force.real * unit - damping * runs.wheel
+    slowing = 2.0 * plant.wheelsets * force.real + resistance(plant, runs.speed)
+    lost = (1.0 - law.slip) * law.h * slowing / (radius * plant.mass)
+    motion = pulled - friction - lost * (1.0 + (law.slip - slip) / (1.0 - law.slip))
+    slope = radius / runs.speed * 2.0 * radius * unit * force.imag / 1e-30 + damping
+    return {"motion": motion, "level": slope * motion, "slope": slope}
 
 
 @cache

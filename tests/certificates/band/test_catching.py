@@ -106,7 +106,7 @@ def test_what_is_said_at_the_end_is_not_far_from_simulated_wheels(rail):
 # --- a sample of single wheels ---------------------------------------------------------------------------------------
 @cache
 def single(rail, count=36):
-    """What a sample makes of the exact state of a wheel that is a cell of its own: the most that can be told from it."""
+    """What a sample makes of the exact states of wheels that are cells of their own: the most that can be told."""
     points = from_rolling.members(rail, {}, count, 17)
     points["fill time"] = np.minimum(points["fill time"], 0.88)  # no valve that is slower than the supply
     numbers = [{name: (float(points[name][k]),) * 2 for name in from_rolling.EIGHT} for k in range(count)]
@@ -122,7 +122,7 @@ def single(rail, count=36):
         speed=np.full(shape, slowest),
     )
     law, cells, fastest = from_rolling.law(rail), wheels(rail, numbers), problem(rail).speeds[1]
-    seen = {name: [] for name in (*STATES, "friction", "lost", "inside", "number")}
+    seen = {name: [] for name in (*STATES, "friction", "limit", "lost", "inside", "number")}
     with np.errstate(all="ignore"):
         way = catching._Way(law, cells, filled, fastest, UNTIL[rail])
         way.rate = (found["room"] * 0.02 / points["fill time"]).max(axis=0)
@@ -130,7 +130,7 @@ def single(rail, count=36):
 
         def heard(row, boxes, *given):
             result = friction(row, boxes, *given)
-            seen["heard"] = result[0]
+            seen["heard"] = result[0], given[2]
             return result
 
         way._friction = heard
@@ -146,8 +146,10 @@ def single(rail, count=36):
             way.lost[:] = False
             way._sample(row, catching.Boxes(number, states, found["speed"][sample, number]))
             change = found["friction"][sample + 1, number] - found["friction"][sample, number]
-            bound = seen["heard"]
+            bound, limit = seen["heard"]
             seen["friction"] += [(bound.low - change).max(), (change - bound.high).max()]
+            level = np.maximum(found["level"][sample, number], found["level"][sample + 1, number])
+            seen["limit"] += [(level - limit).max()]
             for n, j in zip(sample, number, strict=True):
                 seen["lost"].append(bool(way.lost[j]))
                 following = int(np.searchsorted(way.edges, found["slip"][n + 1, j], side="right") - 1)
@@ -174,6 +176,7 @@ def test_a_sample_of_a_single_wheel_holds_its_next_state(rail):
     assert np.count_nonzero(seen["inside"]) > 400
     assert np.mean(seen["lost"]) < 0.6
     assert max(seen["friction"]) < TOLERANCE
+    assert max(seen["limit"]) < TOLERANCE
 
 
 # --- the valve --------------------------------------------------------------------------------------------------------
@@ -440,3 +443,136 @@ def test_edges_of_rows_go_on_beyond_the_last_one():
     assert (np.diff(edges) > 0.0).all()
     assert np.diff(edges).max() <= catching.WIDTH * (1 + 1e-9)
     assert edges.size == count + catching.AHEAD + 2
+
+
+# --- what the friction changes by, of wheels whose friction rises evenly over the slip -------------------------------
+def even(seed, sign, count=600, parts=800):
+    """Friction with one slope, two samples with a pulse each: f, y and torque by integration, and their bounds."""
+    random = np.random.default_rng(seed)
+    law, one = from_rolling.law(WET), np.ones(count)
+    g, kappa = random.uniform(0.75, 1.35, count), random.uniform(0.08, 0.14, count)
+    slope = random.uniform(-0.4, 1.3, count)
+    rho, room = random.uniform(0.4, 1.2, (2, count)), random.uniform(0.1, 0.4, (2, count))
+    torque, q = room[1], random.uniform(0.02, 0.12, count)
+    share = random.random((2, count))
+    times = np.linspace(0.0, 1.0, parts + 1)[:, None]
+    signs = np.array([sign, np.where(random.random(count) < 0.7, sign, -sign)], dtype=object)
+    course, ways, level = [], [], torque
+    left = room[0]
+    for k in range(2):
+        sized = np.where(signs[k] > 0, law.fills * left, law.vents * level) * share[k]
+        length = -np.log1p(-sized / np.where(signs[k] > 0, left, level)) / law.over_fill
+        speed = np.where(signs[k] > 0, rho[0], rho[1]) * law.over_fill
+        gone = -np.expm1(-speed * np.minimum(times, length))
+        change = np.where(signs[k] > 0, left * gone, -level * gone)
+        course.append(level + change)
+        ways.append(np.where(signs[k] > 0, sized, -sized))
+        level, left = course[-1][-1], left - change[-1]
+    moves, friction, summed, step = [q], 0.0 * q, [], 1.0 / parts
+    for k in range(2):
+        mean, pulled = 0.0 * q, np.diff(course[k], axis=0)
+        for n in range(parts):
+            middle = q + 0.5 * (g * pulled[n] - (1.0 + kappa) * slope * q * step)
+            following = q + g * pulled[n] - (1.0 + kappa) * slope * middle * step
+            mean = mean + step * (friction + 0.5 * step * slope * middle)
+            friction, q = friction + step * slope * middle, following
+            moves.append(q)
+        summed.append(mean)
+    y = moves[0] - (1.0 + kappa) * summed[0]
+    change = course[0][-1] - torque
+    exact = summed[1] - summed[0]
+
+    def point(value):
+        return Interval(value, value)
+
+    rows = 3 * catching.AHEAD
+    wide = np.ones((count, rows))
+    none = Interval(0.0 * one, 0.0 * one)
+    way = SimpleNamespace(
+        there=SimpleNamespace(slope=point(slope[:, None] * wide), fading=0.0 * wide),
+        slow=30.0 * one,
+        fastest=33.0,
+        edges=0.01 + 2e-4 * np.arange(rows + 1),
+        _around=lambda _: {"slides": none, "eases": none},
+    )
+    cells = SimpleNamespace(
+        effect=point(g),
+        share=point(kappa),
+        radius=point(0.53 * one),
+        fills=point(rho[0]),
+        vents=point(rho[1]),
+    )
+    valve = catching._Valve(law, cells, point(room[0]), none, point(torque))
+    made = valve.parts(point(ways[0]))
+    states = dict.fromkeys(STATES, none) | {"y": point(y)}
+    boxes = catching.Boxes(np.arange(count), states, 32.0 * one)
+    after = valve.change(valve.parts(point(ways[1]), later=True))
+    steepest = np.max(moves, axis=0) * np.maximum(slope, 0.0)
+    # Only where a wheel slides on, as the map asks for.
+    slides = np.min(moves, axis=0) > 0.0
+    return SimpleNamespace(
+        given=(boxes, cells, (made, point(change), after)),
+        way=way,
+        valve=valve,
+        exact=exact,
+        y=y + g * change - (1.0 + kappa) * exact,
+        steepest=steepest,
+        slides=slides,
+        slope=slope,
+        moves=np.array(moves),
+    )
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("limited", [False, True])
+def test_change_of_an_even_friction_is_within_bounds(sign, limited):
+    made = even(7, sign)
+    limit = made.steepest + 1e-12 if limited else np.full(made.y.size, np.inf)
+    boxes, cells, changes = made.given
+    friction, y, _ = catching._Way._friction(made.way, 0, boxes, cells, changes, limit, made.valve)
+    ok = made.slides
+    assert np.count_nonzero(ok) > 300
+    assert (friction.low - made.exact)[ok].max() < 1e-7
+    assert (made.exact - friction.high)[ok].max() < 1e-7
+    assert (y.low - made.y)[ok].max() < 1e-7
+    assert (made.y - y.high)[ok].max() < 1e-7
+    assert (friction.high - friction.low)[ok].max() < 0.03
+    # As close as that: next to nothing is left where nothing moves the torque.
+    assert (made.exact - friction.low)[ok].min() < 2e-3
+    assert (friction.high - made.exact)[ok].min() < 1e-3
+
+
+def test_what_is_wanted_in_the_next_sample_is_within_bounds(pulse):
+    """The exact map with the pull at both predicted errors, of exact states."""
+    random, law, one = np.random.default_rng(31), pulse.law, np.ones(COUNT)
+    beta = (1.0 - law.theta) / law.theta
+    z, p, error = random.uniform(-0.02, 0.02, (3, COUNT))
+    seen = random.uniform(0.5, 6.0, COUNT)
+    pull = np.array([law.pull(each) for each in seen])
+    beside = z + beta * p - error
+    y = pull - pulse.way + beside
+    errors = seen - law.ahead * (pulse.way - pull)
+    unlike = pulse.g * pulse.mean - pulse.own
+    known = (1.0 - law.kept) * error - law.a * (z + p / law.theta + unlike)
+    later = seen - y - pulse.g * pulse.mean + law.ahead * (known - pulse.change)
+    exact = pulse.way - pulse.change + known + np.array([law.pull(each) for each in later]) - pull
+
+    def point(value):
+        return Interval(value, value)
+
+    states = {"y": point(y), "z": point(z), "p": point(p), "error": point(error), "way": point(pulse.way)}
+    boxes = catching.Boxes(np.arange(COUNT), states, 30.0 * one)
+    way = SimpleNamespace(law=law, errors=point(errors[:, None]))
+    most = y + pulse.g * np.maximum(pulse.change, 0.0) + 0.01
+    parts = pulse.valve.parts(point(pulse.way))
+    steep = catching._steepness(law, catching._Way._seen(way, 0, boxes, point(beside), most))
+    cells = SimpleNamespace(effect=point(pulse.g))
+    given = point(pull), point(beside), most
+    found = catching._Way._way(way, boxes, cells, parts, steep, given)
+    found = found - catching._Way._beyond(pulse.valve, point(pulse.way), steep)
+    ok = (later > 0.05) & (y > 0.0)
+    assert np.count_nonzero(ok) > 250
+    assert (found.low - exact)[ok].max() < 1e-7
+    assert (exact - found.high)[ok].max() < 1e-7
+    curved = ok & (later > 1.5) & pulse.roomy & (np.abs(pulse.way) < 0.02)
+    assert (found.high - found.low)[curved].max() < 0.002

@@ -97,6 +97,38 @@ def test_motion_torque_and_rate_of_simulated_wheels_are_within_bounds(rail):
     rate = states["room"] * tau[seen.cell].max(axis=1)
     assert (rate >= found.least_rate[at] - TOLERANCE).all()
     assert (seen.sample >= found.soonest[at]).all()
+    # In the first part a wheel may go back a little.
+    assert (states["motion"] <= found.motion.high[at] + TOLERANCE).all()
+    assert (states["motion"] >= found.motion.low[at] - np.where(seen.part == 0, 1e-4, TOLERANCE)).all()
+
+
+@pytest.mark.parametrize("rail", RAILS)
+def test_what_the_torque_has_more_than_its_observed_mean_is_within_bounds(rail):
+    found, cell_of, so_far = simulated(rail)
+    law, bound, torque = from_rolling.law(rail), passing(rail), found["torque"]
+    back = np.arange(len(torque))
+    weights = law.a * (back + 1) * law.theta**back
+    with np.errstate(all="ignore"):
+        lags = filling._lags(law, wheels(rail, cells_of(rail)), bound, weights[: filling.WEIGHED])
+    known, count = bounds(rail).alive, 0
+    for n in range(2, len(torque)):
+        part = np.searchsorted(EDGES, found["slip"][n], side="right") - 1
+        here = so_far[n - 1] & (part < EDGES.size - 1)
+        at = cell_of[here], part[here]
+        lag = (torque[n] - weights[:n] @ torque[:n][::-1])[here]
+        assert known[at].all()
+        assert (lag >= np.maximum(lags.low[at], 0.0) - TOLERANCE).all()
+        assert (lag <= lags.high[at] + TOLERANCE).all()
+        count += lag.size
+    assert count > 1000
+
+
+@pytest.mark.parametrize("rail", RAILS)
+def test_rise_of_the_friction_is_below_its_bound(rail):
+    seen, found = visited(rail), passing(rail)
+    with np.errstate(all="ignore"):
+        steep = filling._steepest(from_rolling.law(rail), found.wheels, found)
+    assert (seen.states["level"] <= steep[seen.cell, seen.part] + TOLERANCE).all()
 
 
 @cache
