@@ -103,6 +103,27 @@ def test_what_is_said_at_the_end_is_not_far_from_simulated_wheels(rail):
     assert (end.supply > 0.05).all()
 
 
+@pytest.mark.parametrize("rail", RAILS)
+def test_wheels_want_no_less_after_a_whole_sample_and_enter_in_a_box(rail):
+    """Of the first sample that the valve does not fill; and what is handed on there."""
+    way, _ = followed(rail)
+    found, cell_of, so_far = simulated(rail)
+    first = np.argmax(~so_far, axis=0)
+    spare = []
+    for number, sample in enumerate(first):
+        state = {name: found[name][sample, number] for name in (*STATES, "slip", "speed")}
+        row = int(np.searchsorted(way.edges, state["slip"], side="right") - 1)
+        least = way._after_whole(row, cell_of[[number]], {})[0]
+        spare.append(state["way"] - least)
+        boxes = way._entering(row)
+        inside = (boxes.cell == cell_of[number]) & (boxes.speed <= state["speed"])
+        for name in STATES:
+            bound = boxes.states[name]
+            inside &= (bound.low - TOLERANCE <= state[name]) & (state[name] <= bound.high + TOLERANCE)
+        assert inside.any(), (number, sample)
+    assert -TOLERANCE < min(spare) < 0.012
+
+
 # --- a sample of single wheels ---------------------------------------------------------------------------------------
 @cache
 def single(rail, count=36):
@@ -445,13 +466,49 @@ def test_edges_of_rows_go_on_beyond_the_last_one():
     assert edges.size == count + catching.AHEAD + 2
 
 
+def test_what_is_wanted_after_a_whole_sample_is_that_of_the_map():
+    """Of exact states: no more than the map has, and little less."""
+    random, law, count = np.random.default_rng(12), from_rolling.law(WET), 300
+    beta = (1.0 - law.theta) / law.theta
+    z, p, error = random.uniform(-0.02, 0.02, (3, count))
+    g, rho, room = (random.uniform(*ends, count) for ends in ((0.75, 1.35), (0.4, 1.2), (0.05, 0.4)))
+    seen = random.uniform(1.0, 6.0, count)
+    pull, way = np.array([law.pull(each) for each in seen]), law.fills * room
+    tau, own = rho * law.over_fill, law.nominal * law.over_fill
+    change, mean = room * -np.expm1(-tau), room * (1.0 + np.expm1(-tau) / tau)
+    unlike = g * mean - room * (1.0 + np.expm1(-own) / own)
+    beside = z + beta * p - error
+    known = (1.0 - law.kept) * error - law.a * (z + p / law.theta + unlike)
+    later = seen - (pull - way + beside) - g * mean + law.ahead * (known - change)
+    pulls = np.array([law.pull(each) for each in later])
+    exact = way - change + known + pulls - pull
+    steep = np.array([law.steepness(min(ends)) for ends in zip(pull, pulls, strict=True)])
+
+    def part(value):
+        return Interval(value[:, None], value[:, None])
+
+    filled = SimpleNamespace(
+        room=part(room), z=part(z), p=part(p), error=part(error), rate=(tau * room)[:, None]
+    )
+    cells = SimpleNamespace(effect=Interval(g, g), fills=Interval(rho, rho))
+    made = SimpleNamespace(
+        law=law, filled=filled, cells=cells, edges=np.array([0.0, 0.0]), _steepest=lambda _: steep
+    )
+    ok = later > 0.5
+    found = catching._Way._after_whole(made, 0, np.arange(count), {})
+    assert np.count_nonzero(ok) > 250
+    assert (found - exact)[ok].max() < 1e-12
+    assert (exact - found)[ok].min() < 6e-4
+
+
 # --- what the friction changes by, of wheels whose friction rises evenly over the slip -------------------------------
-def even(seed, sign, count=600, parts=800):
+def even(seed, sign, count=600, parts=800, *, fades=0.0, eases=0.0):
     """Friction with one slope, two samples with a pulse each: f, y and torque by integration, and their bounds."""
     random = np.random.default_rng(seed)
     law, one = from_rolling.law(WET), np.ones(count)
     g, kappa = random.uniform(0.75, 1.35, count), random.uniform(0.08, 0.14, count)
     slope = random.uniform(-0.4, 1.3, count)
+    fades, eases = fades * random.random(count), eases * random.random(count)
     rho, room = random.uniform(0.4, 1.2, (2, count)), random.uniform(0.1, 0.4, (2, count))
     torque, q = room[1], random.uniform(0.02, 0.12, count)
     share = random.random((2, count))
@@ -472,13 +529,15 @@ def even(seed, sign, count=600, parts=800):
     for k in range(2):
         mean, pulled = 0.0 * q, np.diff(course[k], axis=0)
         for n in range(parts):
-            middle = q + 0.5 * (g * pulled[n] - (1.0 + kappa) * slope * q * step)
-            following = q + g * pulled[n] - (1.0 + kappa) * slope * middle * step
-            mean = mean + step * (friction + 0.5 * step * slope * middle)
-            friction, q = friction + step * slope * middle, following
+            pushed = g * pulled[n] + (eases - (1.0 + kappa) * fades) * step
+            middle = q + 0.5 * (pushed - (1.0 + kappa) * slope * q * step)
+            following = q + pushed - (1.0 + kappa) * slope * middle * step
+            gained = step * (slope * middle + fades)
+            mean = mean + step * (friction + 0.5 * gained)
+            friction, q = friction + gained, following
             moves.append(q)
         summed.append(mean)
-    y = moves[0] - (1.0 + kappa) * summed[0]
+    y = moves[0] - (1.0 + kappa) * summed[0] + 0.5 * eases  # by the mean of the drag
     change = course[0][-1] - torque
     exact = summed[1] - summed[0]
 
@@ -489,11 +548,11 @@ def even(seed, sign, count=600, parts=800):
     wide = np.ones((count, rows))
     none = Interval(0.0 * one, 0.0 * one)
     way = SimpleNamespace(
-        there=SimpleNamespace(slope=point(slope[:, None] * wide), fading=0.0 * wide),
+        there=SimpleNamespace(slope=point(slope[:, None] * wide), fading=fades[:, None] * wide),
         slow=30.0 * one,
         fastest=33.0,
         edges=0.01 + 2e-4 * np.arange(rows + 1),
-        _around=lambda _: {"slides": none, "eases": none},
+        _around=lambda _: {"slides": none, "eases": Interval(0.0 * one, eases)},
     )
     cells = SimpleNamespace(
         effect=point(g),
@@ -515,7 +574,7 @@ def even(seed, sign, count=600, parts=800):
         way=way,
         valve=valve,
         exact=exact,
-        y=y + g * change - (1.0 + kappa) * exact,
+        y=y + g * change - (1.0 + kappa) * exact + eases,
         steepest=steepest,
         slides=slides,
         slope=slope,
@@ -525,8 +584,10 @@ def even(seed, sign, count=600, parts=800):
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("limited", [False, True])
-def test_change_of_an_even_friction_is_within_bounds(sign, limited):
-    made = even(7, sign)
+@pytest.mark.parametrize("beside", [{}, {"fades": 1e-3}, {"fades": 1e-4, "eases": 1e-4}], ids=str)
+def test_change_of_an_even_friction_is_within_bounds(sign, limited, beside):
+    """Beside the slip, the speed makes the friction rise and the drag fall."""
+    made = even(7, sign, **beside)
     limit = made.steepest + 1e-12 if limited else np.full(made.y.size, np.inf)
     boxes, cells, changes = made.given
     friction, y, _ = catching._Way._friction(made.way, 0, boxes, cells, changes, limit, made.valve)
@@ -576,3 +637,23 @@ def test_what_is_wanted_in_the_next_sample_is_within_bounds(pulse):
     assert (exact - found.high)[ok].max() < 1e-7
     curved = ok & (later > 1.5) & pulse.roomy & (np.abs(pulse.way) < 0.02)
     assert (found.high - found.low)[curved].max() < 0.002
+
+
+def test_what_the_law_does_not_know_of_means_moves_what_is_wanted(pulse):
+    """By the gain of the observer, and by what the pull makes of that."""
+    random, law, one = np.random.default_rng(5), pulse.law, np.ones(COUNT)
+    none = Interval(0.0 * one, 0.0 * one)
+    states = dict.fromkeys(STATES, none) | {"y": Interval(0.1 * one, 0.1 * one)}
+    boxes, way = catching.Boxes(np.arange(COUNT), states, 30.0 * one), SimpleNamespace(law=law)
+    steep = Interval(*(random.uniform(0.01, 0.1, COUNT),) * 2)
+    parts = pulse.valve.parts(Interval(pulse.way, pulse.way))
+    cells = SimpleNamespace(effect=Interval(pulse.g, pulse.g))
+    given = steep, (Interval(0.12 * one, 0.12 * one), none, 0.1 * one)
+    before = catching._Way._way(way, boxes, cells, parts, *given)
+    for k in range(2):
+        moved = list(parts)
+        moved[k] = parts[k]._replace(unlike=parts[k].unlike + Interval(-1e-3 * one, 2e-3 * one))
+        found = catching._Way._way(way, boxes, cells, moved, *given)
+        gain = law.a * (1.0 + law.ahead * steep.low)
+        np.testing.assert_allclose(found.low - before.low, -2e-3 * gain, atol=1e-12)
+        np.testing.assert_allclose(found.high - before.high, 1e-3 * gain, atol=1e-12)
