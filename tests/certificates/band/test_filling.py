@@ -1,5 +1,6 @@
 """Wheels of which the valves fill from rolling: simulated ones stay in what is said of them; closed forms and sums."""
 
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -11,12 +12,14 @@ from tests.certificates.band import from_rolling
 from tests.certificates.band.from_rolling import LOW, TOLERANCE, WET, cells_of, problem, simulated, wheels
 from tests.certificates.band.sampled_runs import plant_of
 from wspd_design.certificates.kernel.interval import Interval
+from wspd_design.certificates.theorems.from_rolling import cells as cells_module
 from wspd_design.certificates.theorems.from_rolling import filling
 from wspd_design.certificates.theorems.from_rolling.cells import gathered, sliding
 from wspd_design.certificates.theorems.from_rolling.supply import Filling
 
 RAILS = (LOW, WET)
 EDGES = filling.EDGES
+FULL = 60e3 * 0.02 / 752.0
 
 
 @cache
@@ -331,6 +334,59 @@ def test_times_of_torques_are_passed_before_and_after(fillings):
     assert np.isinf(fillings.until(np.full(30, 2.0), np.full(30, 1.5))).all()
 
 
+# --- cells that are lost ----------------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def few():
+    """Some cells, how their wheels pass the slip, and the least speeds that were assumed for that."""
+    law, cells, fastest = from_rolling.law(LOW), wheels(LOW, cells_of(LOW)[4:7]), problem(LOW).speeds[1]
+    slow = np.broadcast_to(0.94 * fastest, (3, EDGES.size - 1))
+    with np.errstate(all="ignore"):
+        return law, cells, filling._passing(law, cells, fastest, slow), slow
+
+
+def lost(few, slow=None, **other):
+    law, cells, passed, assumed = few
+    passed = replace(passed, **other)
+    with np.errstate(all="ignore"):
+        return filling._filled(law, cells, passed, assumed if slow is None else slow).lost
+
+
+def test_cells_of_which_nothing_is_known_are_lost(few):
+    passed = few[2]
+    assert not lost(few).any()
+    assert lost(few, slow=passed.slowest + 1e-6).all()
+    assert lost(few, least_rate=0.0 * passed.least_rate).all()
+    assert lost(few, rate=np.where(EDGES[1:] > 2e-3, np.inf, passed.rate)).all()
+    assert lost(few, wheels=replace(passed.wheels, fills=passed.wheels.fills * 60.0)).all()
+
+
+def test_cells_that_fill_to_the_end_are_lost(few, monkeypatch):
+    """An error as large as that of a wheel that rolls, at all slips."""
+    pulls = filling._pulls
+    monkeypatch.setattr(filling, "_pulls", lambda law, seen: pulls(law, seen) + 5.0)
+    assert lost(few).all()
+
+
+def test_room_is_that_of_fillings_within_the_cell():
+    """At the torques of a part: of the fillings at all corners."""
+    numbers = [from_rolling.cell(LOW, {"fill time": 0.2, "supply rate": 0.8}, 3.0)]
+    law, cells, fastest = from_rolling.law(LOW), wheels(LOW, numbers), problem(LOW).speeds[1]
+    slow = np.broadcast_to(0.94 * fastest, (1, EDGES.size - 1))
+    with np.errstate(all="ignore"):
+        passed = filling._passing(law, cells, fastest, slow)
+        rooms = filling._rooms(law, cells, passed)
+    times = np.linspace(1.0, 60.0, 6001)
+    good = np.isfinite(passed.motion.high[0])
+    for fill in (*numbers[0]["fill time"], np.mean(numbers[0]["fill time"])):
+        for rate in numbers[0]["supply rate"]:
+            one = Filling(FULL, np.full(times.size, rate * 0.02), np.full(times.size, 0.02 / fill))
+            torque, room = one.torque(times), one.room(times)
+            for k in np.flatnonzero(good)[::6]:
+                at = (torque >= passed.torque.low[0, k]) & (torque <= passed.torque.high[0, k])
+                assert (room[at] >= rooms.low[0, k] - 1e-9).all()
+                assert (room[at] <= rooms.high[0, k] + 1e-9).all()
+
+
 # --- parts of the sums -----------------------------------------------------------------------------------------------
 def test_the_largest_of_a_window_is_that_of_its_values():
     random = np.random.default_rng(2)
@@ -430,6 +486,38 @@ def test_bounds_of_the_friction_hold_numeric_derivatives(rail):
     np.testing.assert_allclose(found.eases, eases, rtol=1e-6, atol=1e-14)
     assert np.count_nonzero(bends > 0.0) > 2
     assert np.count_nonzero(rises > 0.0) > 20
+
+
+def test_the_shape_of_the_force_over_ranges_is_that_of_its_points():
+    """Ranges with a place in them at which one of the parts turns, and others; close to what the points have."""
+    random, (adhesion, slip) = np.random.default_rng(3), (0.3, 0.1)
+    roots = np.array([1.0, np.sqrt(3.0), np.sqrt(2.0) - 1.0, np.sqrt(2.0) + 1.0])
+    turns = np.concatenate([roots / adhesion, [1.0 / np.sqrt(3.0) / slip]])
+    low = np.concatenate([turns - 0.4, 10.0 ** random.uniform(-3, 1.5, 60)])
+    high = np.concatenate([turns + 0.4, low[5:] * random.uniform(1.0, 1.5, 60)])
+    found = cells_module._shape(Interval(low, high), adhesion, slip)
+    z = low + np.linspace(0.0, 1.0, 1001)[:, None] * (high - low)
+    a, b, factor = adhesion * z, slip * z, 2.0 / np.pi
+    level = factor * (a / (1 + a**2) + np.arctan(b))
+    steep = factor * (adhesion * (1 - a**2) / (1 + a**2) ** 2 + slip / (1 + b**2))
+    curved = adhesion**2 * 2 * a * (3 - a**2) / (1 + a**2) ** 3 + slip**2 * 2 * b / (1 + b**2) ** 2
+    parts = adhesion * (1 - a**2) / (1 + a**2) ** 2, adhesion**2 * 2 * a * (3 - a**2) / (1 + a**2) ** 3
+    others = slip / (1 + b**2), slip**2 * 2 * b / (1 + b**2) ** 2
+    exact = level, steep, level - z * steep, factor * curved
+    for bound, value in zip(found, exact, strict=True):
+        assert (bound.low <= value.min(axis=0) + 1e-13).all()
+        assert (bound.high >= value.max(axis=0) - 1e-13).all()
+    # Each of two parts by its own ends.
+    apart = [2 * a**3 / (1 + a**2) ** 2, np.arctan(b) - b / (1 + b**2)]
+    for bound, one, other in (
+        (found[0], a / (1 + a**2), np.arctan(b)),
+        (found[1], parts[0], others[0]),
+        (found[2], *apart),
+        (found[3], parts[1], others[1]),
+    ):
+        low_, high_ = (getattr(one, end)(axis=0) + getattr(other, end)(axis=0) for end in ("min", "max"))
+        np.testing.assert_allclose(bound.low, factor * low_, rtol=1e-4, atol=1e-7)
+        np.testing.assert_allclose(bound.high, factor * high_, rtol=1e-4, atol=1e-7)
 
 
 @pytest.mark.parametrize("rail", RAILS)
