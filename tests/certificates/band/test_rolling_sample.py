@@ -67,7 +67,7 @@ def member(rail, number):
     return found
 
 
-def over_samples(plant, since, speed, wheel, torque, fill, vent, h):
+def over_samples(plant, since, speed, wheel, torque, fill, vent, h, parts=PARTS):
     """Speeds and torque at the ends of many samples, and means of force, wheel speed, resistance and torque."""
 
     def pulled(span, t):
@@ -93,8 +93,8 @@ def over_samples(plant, since, speed, wheel, torque, fill, vent, h):
     state = np.array([speed, wheel, *np.zeros((4, len(speed)))])
     begin = 0.0 * speed
     for span, length in enumerate((fill, vent, h - fill - vent)):
-        step = length / PARTS
-        for k in range(PARTS):
+        step = length / parts
+        for k in range(parts):
             t = begin + k * step
             first = rates(span, t, *state[:2])
             second = rates(span, t + step / 2, *(state + step / 2 * first)[:2])
