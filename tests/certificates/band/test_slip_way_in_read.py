@@ -83,7 +83,7 @@ def test_what_is_read_is_what_was_written():
     ("name", "value", "reason"),
     [
         ("format", "wspd-way-in/3", "format"),
-        ("share", "63/1000", f"not between 0 and {LARGEST_SHARE}"),
+        ("share", "501/1000", f"not between 0 and {LARGEST_SHARE}"),
         ("share", "-1/1000", f"not between 0 and {LARGEST_SHARE}"),
         ("rows", [], "no rows"),
         ("rows", {}, "no rows"),
@@ -142,7 +142,7 @@ def nothing_is_followed(monkeypatch):
 
     monkeypatch.setattr(way_in, "checker_of_band", of_band)
     monkeypatch.setattr(way_in, "asked_of", lambda near, proof: (near, "asked", len(proof)))
-    monkeypatch.setattr(way_in, "_supply_rises", lambda *given: seen.rises.append(given))
+    monkeypatch.setattr(way_in, "supply_rises", lambda *given: seen.rises.append(given))
     return seen
 
 

@@ -13,7 +13,7 @@ from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.theorems.slip_band.friction import NAMES, PARTS, SLOPES, Friction, Part
 from wspd_design.certificates.theorems.slip_band.proof import Proof, write
 from wspd_design.certificates.theorems.slip_band.statement import windows_of
-from wspd_design.certificates.theorems.slip_band.way_in import _supply_rises, around
+from wspd_design.certificates.theorems.slip_band.way_in import around, supply_rises
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import constants
 
@@ -93,9 +93,9 @@ def test_supply_that_the_hardest_braked_train_does_not_have_is_refused(problem):
             proof = proof_of(problem, supplies)
             if refused:
                 with pytest.raises(Refused, match="the supply may have"):
-                    _supply_rises(problem, proof, SUPPLY, SPEED)
+                    supply_rises(problem, proof, SUPPLY, SPEED)
             else:
-                _supply_rises(problem, proof, SUPPLY, SPEED)
+                supply_rises(problem, proof, SUPPLY, SPEED)
 
 
 def test_time_counts_from_the_speed_at_which_the_train_is(problem):
@@ -103,5 +103,5 @@ def test_time_counts_from_the_speed_at_which_the_train_is(problem):
     count, slow = len(windows_of(problem)), windows_of(problem)[0][1] - 0.1
     asked = proof_of(problem, [SUPPLY + 1e-6] * count)
     with pytest.raises(Refused, match="the supply may have"):
-        _supply_rises(problem, asked, SUPPLY, slow)
-    _supply_rises(problem, proof_of(problem, [SUPPLY - 1e-6] * count), SUPPLY, slow)
+        supply_rises(problem, asked, SUPPLY, slow)
+    supply_rises(problem, proof_of(problem, [SUPPLY - 1e-6] * count), SUPPLY, slow)
