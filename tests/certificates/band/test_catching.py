@@ -267,9 +267,6 @@ def test_cells_with_states_that_are_not_followed_are_lost(what):
     assert np.count_nonzero(way.lost) <= 1
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a box with an end that is not a number is dropped, and its cell is not lost"
-)
 def test_a_cell_with_a_state_that_is_not_a_number_is_lost():
     way, (_, found, so_far) = way_of(LOW), run(LOW)
     sample, number = np.argwhere(~so_far & (found["slip"] > 0.02))[0]
