@@ -60,7 +60,44 @@ THEOREMS = (
             Identity("K+ = kept K - (1 - kept) D", sample.filter_sum_residual),
             Identity("x - P = fhat - T - K", sample.asked_residual),
         ),
-        certificates=(),
+        certificates=("slip_way_in",),
+    ),
+    Theorem(
+        anchor="ways-in-cells",
+        title="Ways from rolling into a band, in cells of all numbers",
+        statement="Divide the box of friction, supply rate and a share of the ranges of mass, inertia, radius, pads and "
+        "both valve times into cells. While a valve fills without a pause the torque is a function of time alone, so "
+        "that at each slip the motion q = Y - w of a wheel of the cell lies between two bounds, and with it where the "
+        "wheel was some samples before, and what observer and filter have summed up. From the first slip at which "
+        "valves may pause, the slip passes rows so narrow that each sample leads out of its row; in a row the states "
+        "(y, z, p, e, x) and the room of the supply lie in boxes, one for each pair of slices of y and x, and what a "
+        "sample makes of a box lies in boxes of later rows. Beyond the last row the wheels of all cells of a group lie "
+        "in one box; from there on (P, z, p, x) lies in polytopes: for some samples one after the other, then in rows "
+        "of the pull P, each as wide as its largest fall in a sample, then one after the other again. If the last "
+        "polytopes lie in the ellipsoids of a band in all of its cells that the group meets, and the supply has what "
+        "the band asks for, the wheels stay in the band down to the lowest speed, and have not slipped more than in "
+        "any row or polytope.",
+        hypotheses=(
+            "friction and supply rate as stated, six numbers within the stated share, everything else at its nominal "
+            "value, and the scale of the train speed found while rolling",
+            "no dead band, no shortest pulse and no dead time; the supply is that of a main pipe, each cylinder follows "
+            "it with a lag",
+            "IEEE 754, with exp, log, arctan and square root within 8 units in the last place",
+        ),
+        sketch="Intervals are rounded outwards. q moves over the slip by d(q^2)/ds = 2 (v/R) (q'), with the bounds of q' "
+        "of the section on bounds, and what the friction gains between two slips lies between sums of its bounded "
+        "slopes. The change Df weighs S q over two samples, with a weight that rises in the first and falls in the "
+        "second. y = P - x + z + beta p - e cuts each box. The map is affine in g, in the part rho of a way that the "
+        "valve goes, in the share lambda of it that is in the mean and in the slope k of the pull, one by one, so that "
+        "corners of their ranges decide. A polytope is kept by bounds of fixed directions; multipliers of its "
+        "half-spaces that are not negative bound what a direction reaches, wherever they come from.",
+        not_said="Masses, inertias, radii, pads and valve times farther from the nominal ones; noise and dead time.",
+        identities=(
+            Identity("y = P - x + z + beta p - e", sample.fall_residual),
+            Identity("x+ for c = rho x", sample.part_residual),
+            Identity("it changes by ahead (n - c) - y - g lambda c", sample.predicted_change_residual),
+        ),
+        certificates=("slip_way_in",),
     ),
     Theorem(
         anchor="bounds-of-ways-in",
@@ -157,6 +194,6 @@ THEOREMS = (
             Identity("theta^2 m/(1 - theta^2) is kept", bounds.most_error_residual),
             Identity("together they are m", bounds.together_residual),
         ),
-        certificates=(),
+        certificates=("slip_way_in",),
     ),
 )

@@ -31,6 +31,7 @@ from wspd_design.controllers.references import ConstantSlip
 from wspd_design.parameters.units import KMH
 
 STRIPS = "strips"
+IN_CELLS = ways_in.CELLS  # among the numbers of a proof in cells
 BAND = "band 0 above"  # among the numbers if there is a band
 ARRIVED = 0.01  # -, distance from the reference at which the slip has come to it
 RESISTANCE = tuple(f"resistance {part}" for part in ("constant", "linear", "quadratic"))
@@ -66,9 +67,10 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
         *(Inequality(key=name, claim=claim) for name, claim in band.claims(around(problem)).items()),
         Special(
             key=STRIPS,
-            text="strips of friction and supply rate cover both ranges, and of each, with the other numbers anywhere "
-            "within a share of their ranges about the nominal values, the loop is enclosed from rolling until the slip "
-            "has reached its reference, and the wheels are in the ellipsoid of a band where one is given",
+            text="strips of friction and supply rate, or cells of all numbers, cover both ranges, and of each, with the "
+            "other numbers anywhere within a share of their ranges about the nominal values, the loop is enclosed from "
+            "rolling until the slip has reached its reference, and the wheels are in the ellipsoid of a band where one "
+            "is given",
             check=_decided(problem, law),
         ),
     )
@@ -99,9 +101,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         claim += f" From there it stays in a band around it down to {problem.speeds[0] * KMH:.3g} km/h."
     status, margin = all_of(strips), None
     worst: tuple[Point, ...] = ()
-    explanation = (
-        "The enclosure of some strip is lost, or there is no budget for as many strips as would hold."
-    )
+    explanation = "The enclosure of some strip or cell is lost, or there is no budget for as many of them as would hold."
     if strips.status is Status.PROVED:
         found = strips.numbers
         explanation = (
@@ -142,11 +142,20 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         ),
         varied=VARIED,
         held=held,
-        method="affine arithmetic in doubles with outward rounding, Picard's iteration between samples; the law that "
-        "is followed is compared with the one that runs at 96 points; functions of NumPy are taken to be within 8 "
-        "units in the last place",
-        reference="docs/theory.md#way-in",
+        method=f"{_arithmetic(strips)}; the law that is followed is compared with the one that runs at 96 points; "
+        "functions of NumPy are taken to be within 8 units in the last place",
+        reference="docs/theory.md#ways-in-cells" if IN_CELLS in strips.numbers else "docs/theory.md#way-in",
     )
+
+
+def _arithmetic(strips: Finding) -> str:
+    """Say how the loop was enclosed."""
+    if IN_CELLS in strips.numbers:
+        return (
+            f"{strips.numbers[IN_CELLS]:g} cells of all numbers, in intervals and polytopes in doubles with outward "
+            "rounding"
+        )
+    return "strips, in affine arithmetic in doubles with outward rounding, Picard's iteration between samples"
 
 
 def _share(strips: Finding) -> Fraction:

@@ -42,7 +42,9 @@ class Filling(NamedTuple):
         """(exp((tau - s) u) - 1)/(tau - s), u where both rates are nearly the same."""
         apart = self.fill_rate - self.supply_rate
         close = np.abs(apart) < CLOSE
-        found: Array = np.where(close, u, np.expm1(np.minimum(apart * u, 700.0)) / np.where(close, 1.0, apart))
+        found: Array = np.where(
+            close, u, np.expm1(np.minimum(apart * u, 700.0)) / np.where(close, 1.0, apart)
+        )
         return found
 
     def room(self, time: Array) -> Array:

@@ -26,6 +26,7 @@ from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.bounds import Bounds, Ends
 
 FORMAT = "wspd-ways-in/1"
+CELLS = "cells of ways"  # name of their number
 ALL = (*NAMES, SUPPLY)
 EVERY = LETTERS + "s"
 """Which range a step halves, in the order of :data:`ALL`; a full stop is a cell."""
@@ -238,6 +239,7 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
         return {
             **band,
             "share": float(found.share),
+            CELLS: float(sum(each.steps.count(".") for each in found.groups)),
             "friction low": low,
             "friction high": high,
             "largest slip": told.slip,
