@@ -65,8 +65,8 @@ THEOREMS = (
     Theorem(
         anchor="ways-in-cells",
         title="Ways from rolling into a band, in cells of all numbers",
-        statement="Divide the box of friction, supply rate and a share of the ranges of mass, inertia, radius, pads and "
-        "both valve times into cells. While a valve fills without a pause the torque is a function of time alone, so "
+        statement="Divide the box of friction, supply rate and a share of the ranges of mass, inertia, radius, pads "
+        "and both valve times into cells. While a valve fills without a pause the torque is a function of time alone, so "
         "that at each slip the motion q = Y - w of a wheel of the cell lies between two bounds, and with it where the "
         "wheel was some samples before, and what observer and filter have summed up. From the first slip at which "
         "valves may pause, the slip passes rows so narrow that each sample leads out of its row; in a row the states "
@@ -80,12 +80,12 @@ THEOREMS = (
         hypotheses=(
             "friction and supply rate as stated, six numbers within the stated share, everything else at its nominal "
             "value, and the scale of the train speed found while rolling",
-            "no dead band, no shortest pulse and no dead time; the supply is that of a main pipe, each cylinder follows "
-            "it with a lag",
+            "no dead band, no shortest pulse and no dead time; the supply is that of a main pipe, each cylinder "
+            "follows it with a lag",
             "IEEE 754, with exp, log, arctan and square root within 8 units in the last place",
         ),
-        sketch="Intervals are rounded outwards. q moves over the slip by d(q^2)/ds = 2 (v/R) (q'), with the bounds of q' "
-        "of the section on bounds, and what the friction gains between two slips lies between sums of its bounded "
+        sketch="Intervals are rounded outwards. q moves over the slip by d(q^2)/ds = 2 (v/R) (q'), with the bounds of "
+        "q' of the section on bounds, and what the friction gains between two slips lies between sums of its bounded "
         "slopes. The change Df weighs S q over two samples, with a weight that rises in the first and falls in the "
         "second. y = P - x + z + beta p - e cuts each box. The map is affine in g, in the part rho of a way that the "
         "valve goes, in the share lambda of it that is in the mean and in the slope k of the pull, one by one, so that "

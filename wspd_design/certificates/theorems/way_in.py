@@ -1,6 +1,8 @@
 """The way in: what the slip does from rolling to the reference, while the brake builds up.
 
-See :mod:`wspd_design.certificates.theorems.slip_band` for motion, proof and checker.
+See :mod:`wspd_design.certificates.theorems.slip_band` for motion, proof and checker of strips, and
+:mod:`wspd_design.certificates.theorems.from_rolling` for cells: what a sample makes of a state stands in
+docs/theory.md#all-ways-in, and what bounds it in docs/theory.md#bounds-of-ways-in.
 """
 
 from collections.abc import Callable, Mapping
@@ -67,8 +69,8 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
         *(Inequality(key=name, claim=claim) for name, claim in band.claims(around(problem)).items()),
         Special(
             key=STRIPS,
-            text="strips of friction and supply rate, or cells of all numbers, cover both ranges, and of each, with the "
-            "other numbers anywhere within a share of their ranges about the nominal values, the loop is enclosed from "
+            text="strips of friction and supply rate, or cells of all numbers, cover both ranges, and of each, with "
+            "the other numbers anywhere within a share of their ranges about the nominal values, the loop is enclosed from "
             "rolling until the slip has reached its reference, and the wheels are in the ellipsoid of a band where one "
             "is given",
             check=_decided(problem, law),

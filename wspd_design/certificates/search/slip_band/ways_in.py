@@ -27,7 +27,7 @@ TOLERANCES = dict(zip(ALL, (1.2, 0.8, 2.5, 1.0, 1.0, 0.45, 1.5, 0.7), strict=Tru
 """How wide cells can be, one range against another, over half of the stated ranges."""
 CELL = 0.25  # of that width, cells that are tried first
 SMALLEST = 0.05  # at which a cell is given up
-TRIED, HOLD = 24, 0.5  # cells that are followed first, and the part of them that has to hold
+TRIED, HOLD = 24, 0.75  # cells that are tried before all are followed, and the part of them that has to hold
 MOST = 1_200  # cells that are followed, with an effort of 1
 UNTIL = 0.43, 0.6  # of the reference, slips at which cells end
 WAY = 0.9  # of the way of a whole sample, that wheels of a cell want at most when it ends
@@ -83,17 +83,40 @@ def _grouped(
             return None
         one, other = (each for each in parts if each is not None)
         return letters[0] + one[0] + other[0], one[1] + other[1]
-    found = _celled(problem, box, until, widths, count)
-    if found is None:
-        return None
-    steps, start = found
     met = [
         each
         for cell, each in asked
         if all(low <= end and begin <= high for (low, high), (begin, end) in zip(cell, box, strict=False))
     ]
-    plan = plan_for(problem, dict(zip(ALL, box, strict=True)), start, met)
+    numbers = dict(zip(ALL, box, strict=True))
+    if not _promises(problem, box, until, widths, met):
+        return None
+    found = _celled(problem, box, until, widths, count)
+    if found is None:
+        return None
+    steps, start = found
+    plan = plan_for(problem, numbers, start, met)
     return None if isinstance(plan, str) else (".", (Group(steps=steps, plan=plan[0]),))
+
+
+def _promises(
+    problem: Problem, box: Box, until: float, widths: Sequence[float], met: Sequence[Asked]
+) -> bool:
+    """Whether most of some cells hold, from all over a box, and their wheels come into the band."""
+    todo, cells = [box], []
+    while todo:
+        here = todo.pop()
+        letter, size = _widest(here, widths)
+        if size > CELL:
+            todo += halves(here, letter)[::-1]
+        else:
+            cells.append(here)
+    chosen = [cells[k * len(cells) // TRIED] for k in range(TRIED)] if len(cells) > TRIED else cells
+    found = [each[0] for each in caught_of(problem, chosen, until) if each is not None]
+    tight = [each for each in found if _is_tight(problem, each)]
+    if len(found) < HOLD * len(chosen) or not tight:
+        return False
+    return not isinstance(plan_for(problem, dict(zip(ALL, box, strict=True)), together(tight), met), str)
 
 
 def _celled(
@@ -108,14 +131,13 @@ def _celled(
         if count.left <= 0:
             return None
         batch: list[tuple[str, Box]] = []
-        while todo and len(batch) < (AT_ONCE if starts else TRIED):
+        while todo and len(batch) < AT_ONCE:
             path, here = todo.pop()
             if _widest(here, widths)[1] > CELL:
                 todo += _halved(tree, path, here, widths)
             else:
                 batch.append((path, here))
         count.left -= len(batch)
-        first = not starts
         found = caught_of(problem, [here for _, here in batch], until)
         for (path, here), each in zip(batch, found, strict=True):
             if each is not None and _is_tight(problem, each[0]):
@@ -125,8 +147,6 @@ def _celled(
                 return None
             else:
                 todo += _halved(tree, path, here, widths)
-        if first and sum(each is not None for each in found) < HOLD * len(batch):
-            return None
     return _written(tree, ""), together(starts)
 
 
