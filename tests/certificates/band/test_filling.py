@@ -202,7 +202,7 @@ def test_places_some_samples_ago_and_growth_of_the_friction_are_within_bounds(ra
     with np.errstate(all="ignore"):
         windows = filling._Windows(bound)
         growth = filling._Growth(bound, windows)
-        steep = filling._steepest(from_rolling.law(rail), bound.wheels, bound)
+        steep = filling._steepest(bound.wheels, bound)
         coming, since = filling._since(growth, windows, steep)
     known = np.isfinite(bound.motion.high) & bounds(rail).alive
     part = np.clip(np.searchsorted(EDGES, found["slip"], side="right") - 1, 0, EDGES.size - 2)
