@@ -91,6 +91,7 @@ def test_simulated_wheels_end_as_is_said(rail):
     assert (found["speed"][first, number] >= end.speed[cell_of]).all()
     supply = (found["torque"] + found["room"])[first, number] / FULL
     assert (supply >= end.supply[cell_of]).all()
+    assert (first <= end.time[cell_of]).all()
     assert not so_far[first, number].any()
 
 
@@ -192,7 +193,7 @@ def single(rail):
             seen["friction"] += list(np.maximum(bound.low - change, change - bound.high)[seen["followed"]])
             # Until the end of the next sample.
             level = np.max([found["level"][sample + k, number] for k in range(3)], axis=0)
-            seen["limit"] += [(level - limit).max()]
+            seen["limit"] += list((level - limit)[seen["followed"]])
             for n, j in zip(sample, number, strict=True):
                 seen["lost"].append(bool(way.lost[j]))
                 following = int(np.searchsorted(way.edges, found["slip"][n + 1, j], side="right") - 1)
@@ -220,6 +221,25 @@ def test_a_sample_of_a_single_wheel_holds_its_next_state(rail):
     assert np.mean(seen["lost"]) < 0.6
     assert max(seen["friction"]) < TOLERANCE
     assert max(seen["limit"]) < TOLERANCE
+
+
+@pytest.mark.parametrize("rail", RAILS)
+def test_limit_of_the_motion_holds_over_two_samples(rail):
+    """Of wheels whose slip has risen so far, up to the row in which the next sample ends."""
+    way, (_, found, _) = way_of(rail), run(rail)
+    slip, level = found["slip"], found["level"]
+    rises = np.logical_and.accumulate((np.diff(slip, axis=0) > 0.0) | (slip[1:] < way.edges[0]), axis=0)
+    spare = []
+    for row in range(way.count):
+        here = rises[1:] & (slip[:-2] >= way.edges[row]) & (slip[:-2] < way.edges[row + 1])
+        sample, number = np.nonzero(here & (slip[2:] < way.edges[-1]))
+        end = np.searchsorted(way.edges, slip[sample + 2, number], side="right") - 1
+        limit = way._limit(row, catching.Boxes(number, {}, found["speed"][sample, number]), end)
+        for later in range(3):
+            known = np.isfinite(limit)
+            spare += list((1.0 - level[sample + later, number] / limit)[known])
+    assert len(spare) > 300
+    assert 0.0 <= min(spare) < 0.5
 
 
 @pytest.mark.parametrize("rail", RAILS)
@@ -713,7 +733,7 @@ def test_change_of_an_even_friction_is_within_bounds(sign, limited, beside):
     limit = made.steepest + 1e-12 if limited else np.full(made.y.size, np.inf)
     boxes, cells, changes = made.given
     ends = []
-    made.way._limit = lambda row, boxes, end: ends.append(end) or limit
+    made.way._limit = lambda *given: ends.append(given[2]) or limit
     with np.errstate(all="ignore"):
         friction, y = catching._Way._friction(made.way, 0, boxes, cells, changes, made.valve)
     # Wheels that do not slide on in this sample are not followed; in the next one they are seen then.

@@ -63,11 +63,13 @@ def test_states_of_simulated_wheels_are_within_bounds(rail, name):
 
 
 @pytest.mark.parametrize("rail", RAILS)
-def test_simulated_wheels_want_no_less_and_their_train_is_no_slower(rail):
+def test_simulated_wheels_want_no_less_and_are_no_slower_or_later(rail):
     seen, found = visited(rail), bounds(rail)
     at = seen.cell, seen.part
     assert (seen.states["way"] >= found.way[at] - TOLERANCE).all()
     assert (seen.states["speed"] >= found.speed[at]).all()
+    assert (seen.states["level"] <= found.steep[at] + TOLERANCE).all()
+    assert (seen.sample <= found.time[at]).all()
 
 
 @pytest.mark.parametrize("rail", RAILS)
