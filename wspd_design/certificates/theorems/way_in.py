@@ -70,8 +70,8 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
         Special(
             key=STRIPS,
             text="strips of friction and supply rate, or cells of all numbers, cover both ranges, and of each, with "
-            "the other numbers anywhere within a share of their ranges about the nominal values, the loop is enclosed from "
-            "rolling until the slip has reached its reference, and the wheels are in the ellipsoid of a band where one "
+            "the other numbers anywhere within a share of their ranges about the nominal values, the loop is enclosed "
+            "from rolling until the slip has reached its reference, and the wheels are in the ellipsoid of a band where one "
             "is given",
             check=_decided(problem, law),
         ),
@@ -103,7 +103,9 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         claim += f" From there it stays in a band around it down to {problem.speeds[0] * KMH:.3g} km/h."
     status, margin = all_of(strips), None
     worst: tuple[Point, ...] = ()
-    explanation = "The enclosure of some strip or cell is lost, or there is no budget for as many of them as would hold."
+    explanation = (
+        "The enclosure of some strip or cell is lost, or there is no budget for as many as would hold."
+    )
     if strips.status is Status.PROVED:
         found = strips.numbers
         explanation = (
