@@ -67,8 +67,8 @@ THEOREMS = (
         title="Ways from rolling into a band, in cells of all numbers",
         statement="Divide the box of friction, supply rate and a share of the ranges of mass, inertia, radius, pads "
         "and both valve times into cells. While a valve fills without a pause the torque is a function of time alone, "
-        "so that at each slip the motion q = Y - w of a wheel of the cell lies between two bounds, and with it where the "
-        "wheel was some samples before, and what observer and filter have summed up. From the first slip at which "
+        "so that at each slip the motion q = Y - w of a wheel of the cell lies between two bounds, and with it where "
+        "the wheel was some samples before, and what observer and filter have summed up. From the first slip at which "
         "valves may pause, the slip passes rows so narrow that each sample leads out of its row; in a row the states "
         "(y, z, p, e, x) and the room of the supply lie in boxes, one for each pair of slices of y and x, and what a "
         "sample makes of a box lies in boxes of later rows. Beyond the last row the wheels of all cells of a group lie "

@@ -71,8 +71,8 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
             key=STRIPS,
             text="strips of friction and supply rate, or cells of all numbers, cover both ranges, and of each, with "
             "the other numbers anywhere within a share of their ranges about the nominal values, the loop is enclosed "
-            "from rolling until the slip has reached its reference, and the wheels are in the ellipsoid of a band where one "
-            "is given",
+            "from rolling until the slip has reached its reference, and the wheels are in the ellipsoid of a band "
+            "where one is given",
             check=_decided(problem, law),
         ),
     )

@@ -1,14 +1,13 @@
 """Search for how wheels of a cell are followed until they are in the band."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.theorems.from_rolling.braked_wheel import SUPPLY
 from wspd_design.certificates.theorems.from_rolling.sample import law_numbers
 from wspd_design.certificates.theorems.from_rolling.settling import Numbers, Plan, Settled, Start, settles
 from wspd_design.certificates.theorems.slip_band.arrival import Asked
-from wspd_design.certificates.theorems.slip_band.statement import LETTERS, NAMES, law_of
+from wspd_design.certificates.theorems.slip_band.statement import law_of
 
 FIRST, LAST = 3, 120  # samples in time before the rows, and after them
 UNTIL = (21.0, 12.0)  # of what the pull falls by in a sample on the braking curve, where the rows end
@@ -16,12 +15,16 @@ HALVED = ("", "v", "vti", "vtiu")  # at the end, the first that does
 
 
 def plan_for(
-    problem: Problem, numbers: Numbers, start: Start, asked: Sequence[Asked]
+    problem: Problem,
+    numbers: Numbers,
+    start: Start,
+    asked: Sequence[Asked],
+    effort: float = float(len(HALVED)),
 ) -> tuple[Plan, Settled] | str:
     """Return how the wheels of a cell are followed and what that shows, or why they cannot be."""
     sigma, why = law_numbers(law_of(problem.controller)).sigma, ""
     for until in UNTIL:
-        for halved in HALVED:
+        for halved in HALVED[: max(1, int(effort))]:
             plan = Plan(FIRST, until * sigma, LAST, halved)
             try:
                 return plan, settles(problem, numbers, start, asked, plan)
@@ -30,12 +33,3 @@ def plan_for(
                 if "row" in why or "fall" in why:
                     break  # what comes after the rows makes no difference
     return why
-
-
-def halves(numbers: Numbers, letter: str) -> Iterator[dict[str, tuple[float, float]]]:
-    """Yield both halves of a cell; s halves the supply rate."""
-    name = (*NAMES, SUPPLY)[(LETTERS + "s").index(letter)]
-    low, high = numbers[name]
-    middle = 0.5 * (low + high)
-    for half in ((low, middle), (middle, high)):
-        yield {**numbers, name: half}

@@ -36,20 +36,22 @@ GROUP = "vti"  # ranges of which groups are halves, where the box is one group t
 
 @dataclass(slots=True)
 class Count:
-    """Cells that may be followed yet."""
+    """What may be spent."""
 
-    left: int
+    effort: float
+    left: int  # cells that may be followed yet
 
 
 def ways(
     problem: Problem, share: Fraction, asked: Sequence[tuple[Cell, Asked]], effort: float, whole: Problem
 ) -> Proof | None:
     """Find a proof for a box, ``problem``, that has a share of the ranges of ``whole``; None if none was found."""
-    count, near = Count(int(MOST * effort)), held(problem)
+    count, near = Count(effort, int(MOST * effort)), held(problem)
     widths = [0.5 * (high - low) for low, high in (whole.span(name) for name in ALL)]
-    for part in UNTIL:
+    tried = max(1, int(effort))
+    for part in UNTIL[:tried]:
         until = part * problem.slip
-        for letters in _prefixes(GROUP):
+        for letters in _prefixes(GROUP[: tried - 1]):
             found = _grouped(near, box_around(near), letters, until, asked, widths, count)
             if found is not None:
                 steps, groups = found
@@ -89,18 +91,23 @@ def _grouped(
         if all(low <= end and begin <= high for (low, high), (begin, end) in zip(cell, box, strict=False))
     ]
     numbers = dict(zip(ALL, box, strict=True))
-    if not _promises(problem, box, until, widths, met):
+    if not _promises(problem, box, until, widths, met, count.effort):
         return None
     found = _celled(problem, box, until, widths, count)
     if found is None:
         return None
     steps, start = found
-    plan = plan_for(problem, numbers, start, met)
+    plan = plan_for(problem, numbers, start, met, count.effort)
     return None if isinstance(plan, str) else (".", (Group(steps=steps, plan=plan[0]),))
 
 
 def _promises(
-    problem: Problem, box: Box, until: float, widths: Sequence[float], met: Sequence[Asked]
+    problem: Problem,
+    box: Box,
+    until: float,
+    widths: Sequence[float],
+    met: Sequence[Asked],
+    effort: float,
 ) -> bool:
     """Whether most of some cells hold, from all over a box, and their wheels come into the band."""
     todo, cells = [box], []
@@ -116,7 +123,9 @@ def _promises(
     tight = [each for each in found if _is_tight(problem, each)]
     if len(found) < HOLD * len(chosen) or not tight:
         return False
-    return not isinstance(plan_for(problem, dict(zip(ALL, box, strict=True)), together(tight), met), str)
+    return not isinstance(
+        plan_for(problem, dict(zip(ALL, box, strict=True)), together(tight), met, effort), str
+    )
 
 
 def _celled(
