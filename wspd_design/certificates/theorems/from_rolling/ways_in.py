@@ -91,7 +91,8 @@ def write(proof: Proof, band: Mapping[str, Any]) -> dict[str, Any]:
 
 def read(written: Mapping[str, Any]) -> Proof:
     """Read a proof, or refuse it."""
-    if written.keys() != {"format", "share", "band", "until", "steps", "groups"}:
+    keys = {"format", "share", "band", "until", "steps", "groups"}
+    if written.keys() != keys or written["format"] != FORMAT:
         raise Refused(f"the proof does not have the format {FORMAT}")
     share, until, groups = _short(written["share"]), float(_short(written["until"])), written["groups"]
     if not 0 <= share <= 1:
