@@ -17,7 +17,6 @@ from wspd_design.certificates.theorems.from_rolling.ways_in import (
     box_around,
     caught_of,
     halves,
-    held,
     together,
 )
 from wspd_design.certificates.theorems.slip_band.arrival import Asked
@@ -46,13 +45,13 @@ def ways(
     problem: Problem, share: Fraction, asked: Sequence[tuple[Cell, Asked]], effort: float, whole: Problem
 ) -> Proof | None:
     """Find a proof for a box, ``problem``, that has a share of the ranges of ``whole``; None if none was found."""
-    count, near = Count(effort, int(MOST * effort)), held(problem)
+    count = Count(effort, int(MOST * effort))
     widths = [0.5 * (high - low) for low, high in (whole.span(name) for name in ALL)]
     tried = max(1, int(effort))
     for part in UNTIL[:tried]:
         until = part * problem.slip
         for letters in _prefixes(GROUP[: tried - 1]):
-            found = _grouped(near, box_around(near), letters, until, asked, widths, count)
+            found = _grouped(problem, box_around(problem), letters, until, asked, widths, count)
             if found is not None:
                 steps, groups = found
                 return Proof(share, until, steps, groups)

@@ -7,7 +7,7 @@ the ellipsoids of the band (:mod:`settling`).
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeAlias
 
@@ -23,14 +23,13 @@ from wspd_design.certificates.theorems.slip_band.friction import FRICTION
 from wspd_design.certificates.theorems.slip_band.statement import LETTERS, NAMES, Cell, law_of
 from wspd_design.certificates.theorems.slip_band.way_in import around, asks_of, supply_rises
 from wspd_design.controllers.protection import Protection
-from wspd_design.parameters.bounds import Bounds, Ends
+from wspd_design.parameters.bounds import Ends
 
 FORMAT = "wspd-ways-in/1"
 CELLS = "cells of ways"  # name of their number
 ALL = (*NAMES, SUPPLY)
 EVERY = LETTERS + "s"
 """Which range a step halves, in the order of :data:`ALL`; a full stop is a cell."""
-RESISTANCE = "resistance "
 MOST_CELLS, MOST_LETTERS = 50_000, 60  # of a proof, of a number
 AT_ONCE = 256  # cells that are followed together
 WORK = 2_000, 400_000  # operations that a cell, and the wheels of a group, are worth
@@ -155,12 +154,6 @@ def halves(box: Box, letter: str) -> tuple[Box, Box]:
     return (*box[:k], (low, middle), *box[k + 1 :]), (*box[:k], (middle, high), *box[k + 1 :])
 
 
-def held(problem: Problem) -> Problem:
-    """Return the problem with the running resistance at its nominal value."""
-    kept = {name: ends for name, ends in problem.bounds.items() if not name.startswith(RESISTANCE)}
-    return replace(problem, bounds=Bounds.of(kept))
-
-
 def box_around(problem: Problem) -> Box:
     """Return the box of a problem around its nominal numbers."""
     return tuple(problem.span(name) for name in ALL)
@@ -195,7 +188,6 @@ def followed(problem: Problem, proof: Proof, asked: Sequence[tuple[Cell, Asked]]
     reason = speaks_about(problem)
     if reason:
         raise Refused(reason)
-    problem = held(problem)
     groups, shown = iter(proof.groups), []
     for box in boxes_of(box_around(problem), proof.steps):
         group = next(groups, None)
