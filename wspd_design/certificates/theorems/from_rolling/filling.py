@@ -25,7 +25,6 @@ SINK = 1e-4  # slip below 0 that a wheel that rolls does not exceed
 FIRST, GROWS, GRAIN, STRIDE, LAST = 2e-5, 1.02, 8e-6, 7e-4, 0.125  # parts of the slip, narrow ones first
 TAPERED = 0.03  # slip from which on they have one width
 INNER = 2  # steps of the motion within a part
-FASTER = 0.35  # rad/s, that no wheel moves by in a sample
 BACK = 24  # samples that are looked back on
 WEIGHED = 14  # of them, that the observer weighs one by one
 FLOOR = 0.02  # slope of the friction, below which its own bound is used
@@ -118,7 +117,7 @@ def _passing(law: LawNumbers, cells: Cells, fastest: float, slow: Array) -> _Pas
     peak = fast.peak
     for k in range(parts):
         slope, loses = there.slope[:, k], (there.loss / speed).high[:, k]
-        easing = (1.0 + aside) * (there.eases[:, k] + share.high * cells.damping.high * FASTER)
+        damped = share.high * cells.damping.high
         slides = np.maximum(there.slides.high[:, k], 0.0)
         lowest = np.maximum(lowest, (torque_of.low[:, k] + least) / cells.effect.high)
         assumed = 1.1 * q + 0.004
@@ -126,7 +125,7 @@ def _passing(law: LawNumbers, cells: Cells, fastest: float, slow: Array) -> _Pas
             most = np.maximum((torque_of.high[:, k] + slides + assumed) / cells.effect.low, lowest)
             when["fast"] = fast.until(most, when["fast"])
             rate_there = fast.rate(np.minimum(when["fast"], peak)) * (1.0 + SPARE) + SPARE
-            beside = loses * assumed + easing
+            beside = loses * assumed + (1.0 + aside) * (there.eases[:, k] + damped * assumed)
             drive = cells.effect.high * np.maximum(rate, rate_there) + beside
             held = np.where(slope.low > 0.0, 1.0 + share.low, 1.0 + share.high * (1.0 + aside)) * slope.low
             after = _faster(q, drive, held, 2.0 * faster * width[k])
@@ -220,9 +219,7 @@ class _Windows:
         most = np.maximum.accumulate(passing.motion.high, axis=1)
         least_way = (wheels.radius.low / speed.high) * slow * (1.0 - SPARE)
         way = (wheels.radius.high / speed.low) * most * (1.0 + SPARE)
-        ahead = (wheels.radius.high / speed.low) * np.minimum(
-            most + 2.0 * wheels.effect.high * passing.rate, FASTER
-        )
+        ahead = (wheels.radius.high / speed.low) * (most + 2.0 * wheels.effect.high * passing.rate)
         self._near, self._near_half = (self._begin(least_way * part) for part in (1.0, 0.5))
         self._far, self._far_half = (self._end(way * part) for part in (1.0, 0.5))
         self.next = np.minimum(
@@ -332,14 +329,14 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
         before = (one + other) * 0.5
         p = p + weight * Interval(before.low, np.minimum(before.high, since[back].high - 0.0 * coming.low))
     # --- what the torque does beyond what the law takes it for
-    ratio = np.minimum(cells.supply_rate.high[:, None] * cells.one.full / _least(rooms.low, windows, 5), 1.0)
+    ratio = np.minimum(cells.supply_rate.high[:, None] * cells.one.full / _least(rooms.low, windows, 6), 1.0)
     tau = wheels.fills * law.over_fill
     goes = (1.0 - (-tau).exp()) * Interval(1.0, 1.0 + 0.506 * ratio)
     own_mean = Interval(0.5 * nominal * (1.0 - nominal / 3.0), 0.5 * nominal) / goes
     aside = 0.506 * ratio / 6.0
     unlike = wheels.effect * Interval(0.5 - aside, 0.5056) - own_mean
-    change = Interval(0.97 * _least(passing.least_rate, windows, 5), passing.rate)
-    change = Interval(np.where(windows.far[5] == 0, 0.0, np.maximum(change.low, 0.0)), change.high)
+    change = Interval(0.97 * _least(passing.least_rate, windows, 6), passing.rate)
+    change = Interval(np.where(windows.far[6] == 0, 0.0, np.maximum(change.low, 0.0)), change.high)
     spare = 0.03 * 0.2 * passing.rate
     unlike, learned = unlike * change, ((wheels.effect - 1.0) - (1.0 - theta) * unlike) * change
     z_torque = learned * (1.0 / (1.0 - theta))
@@ -371,7 +368,7 @@ def _filled(law: LawNumbers, cells: Cells, passing: _Passing, assumed: Array) ->
         turned_high = turned_high + (max(more, 0.0) * high + min(more, 0.0) * 0.0)
         turned_low = turned_low + (max(more, 0.0) * low + min(more, 0.0) * high)
     half = Interval(
-        0.93 * 0.5 * nominal * (1.0 - nominal / 3.0) * _least(rooms.low, windows, 6),
+        0.93 * 0.5 * nominal * (1.0 - nominal / 3.0) * _least(rooms.low, windows, 7),
         0.5 * nominal * np.maximum.accumulate(rooms.high, axis=1),
     )
     asked = Interval(
