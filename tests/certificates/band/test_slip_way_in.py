@@ -335,8 +335,8 @@ def test_a_larger_share_than_strips_bear_is_refused(slow):
     found = checker(problem, problem.controller)(write(rows_of, Fraction(1, 200)), Work(PLENTY))
     assert found["share"] == 1 / 200
     assert "lost" in refused(problem, write(rows_of, Fraction(1, 16)))
-    assert "between 0 and 1/16" in refused(problem, write(rows_of, Fraction(1, 10)))
-    assert "between 0 and 1/16" in refused(problem, write(rows_of, Fraction(-1, 100)))
+    assert "between 0 and 1/2" in refused(problem, write(rows_of, Fraction(6, 10)))
+    assert "between 0 and 1/2" in refused(problem, write(rows_of, Fraction(-1, 100)))
 
 
 def enclosed(problem, strip, samples):

@@ -9,21 +9,22 @@ the ellipsoids of the band (:mod:`settling`).
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.theorems.from_rolling.braked_wheel import SUPPLY, Between, wheels_of
-from wspd_design.certificates.theorems.from_rolling.sample import law_numbers
-from wspd_design.certificates.theorems.from_rolling.settling import Plan, Settled, Start, settles
-from wspd_design.certificates.theorems.slip_band.arrival import Asked
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION
 from wspd_design.certificates.theorems.slip_band.statement import LETTERS, NAMES, Cell, law_of
-from wspd_design.certificates.theorems.slip_band.way_in import around, asks_of, supply_rises
+from wspd_design.certificates.theorems.slip_band.way_in import SUPPLY, around, asks_of, supply_rises
 from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.bounds import Ends
+
+if TYPE_CHECKING:
+    from wspd_design.certificates.theorems.from_rolling.braked_wheel import Between
+    from wspd_design.certificates.theorems.from_rolling.settling import Plan, Settled, Start
+    from wspd_design.certificates.theorems.slip_band.arrival import Asked
 
 FORMAT = "wspd-ways-in/1"
 CELLS = "cells of ways"  # name of their number
@@ -44,7 +45,7 @@ class Group:
     """Cells whose wheels are put together where they are on the braking curve."""
 
     steps: str
-    plan: Plan
+    plan: "Plan"
 
 
 class Proof(NamedTuple):
@@ -107,6 +108,8 @@ def read(written: Mapping[str, Any]) -> Proof:
 
 
 def _group(written: object) -> Group:
+    from wspd_design.certificates.theorems.from_rolling.settling import Plan
+
     if not isinstance(written, dict) or written.keys() != {"steps", "first", "pull", "last", "halved"}:
         raise Refused("a group needs steps, first, pull, last and halved")
     first, last, halved = written["first"], written["last"], written["halved"]
@@ -171,7 +174,7 @@ def speaks_about(problem: Problem) -> str:
     return ""
 
 
-def followed(problem: Problem, proof: Proof, asked: Sequence[tuple[Cell, Asked]], work: Work) -> Followed:
+def followed(problem: Problem, proof: Proof, asked: "Sequence[tuple[Cell, Asked]]", work: Work) -> Followed:
     """Return what is shown of all wheels of the box, or refuse the proof.
 
     Parameters
@@ -185,6 +188,8 @@ def followed(problem: Problem, proof: Proof, asked: Sequence[tuple[Cell, Asked]]
     work : Work
         What may be spent.
     """
+    from wspd_design.certificates.theorems.from_rolling.settling import settles
+
     reason = speaks_about(problem)
     if reason:
         raise Refused(reason)
@@ -246,7 +251,7 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
     return check
 
 
-def _met(asked: Sequence[tuple[Cell, Asked]], box: Box) -> list[Asked]:
+def _met(asked: "Sequence[tuple[Cell, Asked]]", box: Box) -> "list[Asked]":
     """What the cells of the band ask for that a box meets."""
     return [
         each
@@ -255,7 +260,7 @@ def _met(asked: Sequence[tuple[Cell, Asked]], box: Box) -> list[Asked]:
     ]
 
 
-def _told(problem: Problem, box: Box, start: Start, time: float, settled: Settled) -> Followed:
+def _told(problem: Problem, box: Box, start: "Start", time: float, settled: "Settled") -> Followed:
     """What is shown of the wheels of a group."""
     radius = box[ALL.index("wheel radius")][1]
     return Followed(
@@ -268,7 +273,7 @@ def _told(problem: Problem, box: Box, start: Start, time: float, settled: Settle
     )
 
 
-def started(problem: Problem, cells: Sequence[Box], until: float) -> tuple[Start, float]:
+def started(problem: Problem, cells: Sequence[Box], until: float) -> "tuple[Start, float]":
     """Return what wheels of some cells have together at the first sample beyond a slip, and when at the latest [s]."""
     found = [
         each
@@ -282,10 +287,12 @@ def started(problem: Problem, cells: Sequence[Box], until: float) -> tuple[Start
     return together([each for each, _ in parts]), max(time for _, time in parts) * float(law.sample_time)
 
 
-def together(starts: Sequence[Start]) -> Start:
+def together(starts: "Sequence[Start]") -> "Start":
     """Return what holds of all wheels."""
+    from wspd_design.certificates.theorems.from_rolling.braked_wheel import Between
+    from wspd_design.certificates.theorems.from_rolling.settling import Start
 
-    def over(name: str) -> Between:
+    def over(name: str) -> "Between":
         ends = [getattr(each, name) for each in starts]
         return Between(min(each.low for each in ends), max(each.high for each in ends))
 
@@ -296,11 +303,14 @@ def together(starts: Sequence[Start]) -> Start:
     )
 
 
-def caught_of(problem: Problem, cells: Sequence[Box], until: float) -> list[tuple[Start, float] | None]:
+def caught_of(problem: Problem, cells: Sequence[Box], until: float) -> "list[tuple[Start, float] | None]":
     """Return for each cell what its wheels have at the first sample beyond a slip, with samples since; None if lost."""
+    from wspd_design.certificates.theorems.from_rolling.braked_wheel import Between, wheels_of
     from wspd_design.certificates.theorems.from_rolling.catching import caught
     from wspd_design.certificates.theorems.from_rolling.cells import gathered
     from wspd_design.certificates.theorems.from_rolling.filling import filled
+    from wspd_design.certificates.theorems.from_rolling.sample import law_numbers
+    from wspd_design.certificates.theorems.from_rolling.settling import Start
 
     exact = law_of(problem.controller)
     law, fastest = law_numbers(exact), problem.speeds[1]
@@ -308,7 +318,7 @@ def caught_of(problem: Problem, cells: Sequence[Box], until: float) -> list[tupl
     filling = filled(law, gotten, fastest)
     found = caught(law, gotten, filling, fastest, until)
 
-    def between(name: str, k: int) -> Between:
+    def between(name: str, k: int) -> "Between":
         ends = found.states[name]
         return Between(float(ends.low[k]), float(ends.high[k]))
 
