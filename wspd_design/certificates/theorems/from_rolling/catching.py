@@ -75,7 +75,12 @@ def rows(begin: float, end: float) -> tuple[Array, int]:
 def caught(law: LawNumbers, cells: Cells, filled: Filled, fastest: float, until: float) -> Caught:
     """Follow wheels whose valves pause through all rows that begin below a slip, whatever becomes of them."""
     with np.errstate(all="ignore"):
-        return _Way(law, cells, filled, fastest, until).followed()
+        way = _Way(law, cells, filled, fastest, until)
+        found = way.followed()
+    # All wheels have to begin to pause within the rows.
+    first, last = way.entries
+    outside = (EDGES[first] < way.edges[0]) | (EDGES[last + 1] > way.edges[way.count])
+    return found._replace(lost=found.lost | outside)
 
 
 class _Way:
