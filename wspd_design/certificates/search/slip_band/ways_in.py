@@ -17,6 +17,7 @@ from wspd_design.certificates.theorems.from_rolling.ways_in import (
     box_around,
     caught_of,
     halves,
+    met_by,
     together,
 )
 from wspd_design.certificates.theorems.slip_band.arrival import Asked
@@ -84,11 +85,7 @@ def _grouped(
             return None
         one, other = (each for each in parts if each is not None)
         return letters[0] + one[0] + other[0], one[1] + other[1]
-    met = [
-        each
-        for cell, each in asked
-        if all(low <= end and begin <= high for (low, high), (begin, end) in zip(cell, box, strict=False))
-    ]
+    met = met_by(asked, box)
     numbers = dict(zip(ALL, box, strict=True))
     if not _promises(problem, box, until, widths, met, count.effort):
         return None
@@ -132,7 +129,6 @@ def _celled(
 ) -> tuple[str, Start] | None:
     """Divide a box into cells that hold, the widest range first; with what their wheels have together."""
     tree: dict[str, str] = {}  # letter of each node that is halved, by its path
-    leaves: dict[str, Box] = {}
     todo = [("", box)]
     starts: list[Start] = []
     while todo:
@@ -149,7 +145,6 @@ def _celled(
         found = caught_of(problem, [here for _, here in batch], until)
         for (path, here), each in zip(batch, found, strict=True):
             if each is not None and _is_tight(problem, each[0]):
-                leaves[path] = here
                 starts.append(each[0])
             elif _widest(here, widths)[1] < SMALLEST:
                 return None

@@ -202,7 +202,7 @@ def followed(problem: Problem, proof: Proof, asked: "Sequence[tuple[Cell, Asked]
         work.spend(WORK[0] * len(cells) + WORK[1])
         start, time = started(problem, cells, proof.until)
         numbers = dict(zip(ALL, box, strict=True))
-        settled = settles(problem, numbers, start, _met(asked, box), group.plan)
+        settled = settles(problem, numbers, start, met_by(asked, box), group.plan)
         shown.append(_told(problem, box, start, time, settled))
     if next(groups, None) is not None:
         raise Refused("there are more groups than parts of the box")
@@ -251,7 +251,7 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
     return check
 
 
-def _met(asked: "Sequence[tuple[Cell, Asked]]", box: Box) -> "list[Asked]":
+def met_by(asked: "Sequence[tuple[Cell, Asked]]", box: Box) -> "list[Asked]":
     """What the cells of the band ask for that a box meets."""
     return [
         each
