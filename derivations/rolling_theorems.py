@@ -1,6 +1,7 @@
 """What holds on the way from rolling to the reference for all numbers at once, with the identities of the proofs."""
 
 from derivations import rolling_bounds as bounds
+from derivations import rolling_instants as instants
 from derivations import rolling_sample as sample
 from derivations.theorem import Identity, Theorem
 
@@ -67,16 +68,18 @@ THEOREMS = (
         title="Ways from rolling into a band, in cells of all numbers",
         statement="Divide the box of friction, supply rate and a share of the ranges of mass, inertia, radius, pads "
         "and both valve times into cells. While a valve fills without a pause the torque is a function of time alone, "
-        "so that at each slip the motion q = Y - w of a wheel of the cell lies between two bounds, and with it where "
-        "the wheel was some samples before, and what observer and filter have summed up. From the first slip at which "
-        "valves may pause, the slip passes rows so narrow that each sample leads out of its row; in a row the states "
-        "(y, z, p, e, x) and the room of the supply lie in boxes, one for each pair of slices of y and x, and what a "
-        "sample makes of a box lies in boxes of later rows. Beyond the last row the wheels of all cells of a group lie "
-        "in one box; from there on (P, z, p, x) lies in polytopes: for some samples one after the other, then in rows "
-        "of the pull P, each as wide as its largest fall in a sample, then one after the other again. If the last "
-        "polytopes lie in the ellipsoids of a band in all of its cells that the group meets, and the supply has what "
-        "the band asks for, the wheels stay in the band down to the lowest speed, and have not slipped more than in "
-        "any row or polytope.",
+        "so that at each slip the motion q = Y - w of a wheel of the cell lies between two bounds, and with it in "
+        "which parts of the slip the wheel was a sample before. What observer and filter have not yet learned is "
+        "followed from part to part: of what it was a sample before a share is kept, and what the friction changed by "
+        "since is added. From the first slip at which valves may pause, the slip passes rows so narrow that each "
+        "sample leads out of its row; in a row the states (y, z, p, e, x), the room of the supply, the speed and the "
+        "least supply lie in boxes, one for each pair of slices of y and x, and what a sample makes of a box lies in "
+        "boxes of later rows. Beyond the last row the wheels of all cells of a group lie in one box; from there on "
+        "(P, z, p, x) lies in polytopes: for some samples one after the other, then in rows of the pull P, each as "
+        "wide as its largest fall in a sample, then one after the other again. If the last polytopes lie in the "
+        "ellipsoids of a band, in all of its cells that the group meets and in all windows that the train may be in, "
+        "about the centers for the drifts of these wheels at these speeds, and the supply has what the band asks for, "
+        "the wheels stay in the band down to the lowest speed, and have not slipped more than in any row or polytope.",
         hypotheses=(
             "friction and supply rate as stated, six numbers within the stated share, everything else at its nominal "
             "value, and the scale of the train speed found while rolling",
@@ -85,17 +88,27 @@ THEOREMS = (
             "IEEE 754, with exp, log, arctan and square root within 8 units in the last place",
         ),
         sketch="Intervals are rounded outwards. q moves over the slip by d(q^2)/ds = 2 (v/R) (q'), with the bounds of "
-        "q' of the section on bounds, and what the friction gains between two slips lies between sums of its bounded "
-        "slopes. The change Df weighs S q over two samples, with a weight that rises in the first and falls in the "
-        "second. y = P - x + z + beta p - e cuts each box. The map is affine in g, in the part rho of a way that the "
-        "valve goes, in the share lambda of it that is in the mean and in the slope k of the pull, one by one, so that "
-        "corners of their ranges decide. A polytope is kept by bounds of fixed directions; multipliers of its "
-        "half-spaces that are not negative bound what a direction reaches, wherever they come from.",
+        "q' of the section on bounds; S q is at least the least slope times the least motion in the parts that a "
+        "sample may pass. The change Df weighs S q over two samples, with a weight that rises in the first and falls "
+        "in the second. y = P - x + z + beta p - e cuts each box. The map is affine in g, in the part rho of a way "
+        "that the valve goes, in the share lambda of it that is in the mean and in the slope k of the pull, one by "
+        "one, so that corners of their ranges decide. A polytope is kept by bounds of fixed directions; multipliers "
+        "of its half-spaces that are not negative bound what a direction reaches, wherever they come from.",
         not_said="Masses, inertias, radii, pads and valve times farther from the nominal ones; noise and dead time.",
         identities=(
             Identity("y = P - x + z + beta p - e", sample.fall_residual),
             Identity("x+ for c = rho x", sample.part_residual),
             Identity("it changes by ahead (n - c) - y - g lambda c", sample.predicted_change_residual),
+            Identity("z counted from an instant: z+", instants.instant_residual),
+            Identity("e counted from an instant: e+", instants.lag_instant_residual),
+            Identity("what is added to z is f' with a weight from theta to 1", instants.weight_residual),
+            Identity("of the mean (1 + theta)/2", instants.weights_residual),
+            Identity("the mean is the instant and f' with a weight from 1 to 0", instants.mean_residual),
+            Identity("x - P by what the observer has of torque and motion", instants.beyond_pull_residual),
+            Identity(
+                "an even rise in a mean of two samples, from the first mean on", instants.above_residual
+            ),
+            Identity("and before", instants.below_residual),
         ),
         certificates=("slip_way_in",),
     ),

@@ -5,7 +5,7 @@ import pytest
 from tests.lazily import Lazily, residuals
 
 rolling_sample = Lazily("rolling_sample")
-MODULES = {"rolling_sample": 23, "rolling_bounds": 49}
+MODULES = {"rolling_sample": 23, "rolling_bounds": 49, "rolling_instants": 8}
 TWICE = 3  # identities that two theorems use
 
 

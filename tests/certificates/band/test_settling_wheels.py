@@ -234,7 +234,7 @@ def test_plans_that_do_not_fit_are_refused(problem, numbers, plan):
     "start",
     [
         START._replace(way=Between(-0.1, 0.1)),
-        START._replace(room=0.0),
+        START._replace(room=0.0, supply=0.0),
         START._replace(error=Between(-0.2, 0.2)),
         START._replace(p=Between(-0.2, 0.2)),
     ],

@@ -330,17 +330,17 @@ def test_what_a_band_asks_for_is_that_of_its_fastest_window(problem, monkeypatch
         }
         return write(Proof(**{**numbers, **changed}))
 
-    fastest, where = ellipsoids[-1], []
+    fastest, where = ellipsoids[-1], []  # the fastest window comes first
     none = point(0)
 
     def steady_of(_problem, _found, at, each):
         where.append((at[1], each))
-        ends = (point(fastest.drift - Fraction(3, 10)), point(fastest.drift + Fraction(1, 10)))
+        ends = (point(each.drift - Fraction(3, 10)), point(each.drift + Fraction(1, 10)))
         return Steady(*ends, (none, none), none, none)
 
     monkeypatch.setattr(way_in, "steady_of", steady_of)
     asked = asked_of(near, proof())
-    assert where == [(count - 1, fastest)]
+    assert where == [(k, ellipsoids[k]) for k in reversed(range(count))]
     assert asked.speeds == windows_of(near)[-1]
     assert (asked.settled, asked.supply) == (float(fastest.settled), float(fastest.supply))
     np.testing.assert_allclose(asked.center, [float(each) for each in fastest.center])

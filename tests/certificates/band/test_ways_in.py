@@ -38,7 +38,6 @@ def stop():
     narrow = replace(problem, bounds=type(problem.bounds).of(ends), speeds=(80.0 / 3.6, problem.speeds[1]))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(slip_way_in, "IN_CELLS", (SHARE,))
-        patch.setattr(slip_way_in, "WORTH", (0.0,))
         (found,) = suite.verify(narrow, only=["slip_way_in"], figures=False)
     return narrow, found
 

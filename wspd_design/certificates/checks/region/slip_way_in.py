@@ -22,10 +22,8 @@ from wspd_design.certificates.theorems.slip_band.way_in import around, asked_of,
 from wspd_design.certificates.theorems.way_in import SLIP_WAY_IN, STRIPS
 from wspd_design.controllers.protection import Protection
 
-IN_CELLS = tuple(map(Fraction, ("1/2", "3/8", "1/4", "1/8")))
+IN_CELLS = tuple(map(Fraction, ("1/8", "1/4", "3/8", "1/2")))
 """Shares of the ranges of the other numbers, each way from their nominal values, that are sought in cells."""
-WORTH = 4.0, 2.0, 1.0, 1.0
-"""Effort from which on they are."""
 OTHERS = tuple(map(Fraction, ("1/16", "1/20", "1/30", "1/50", "1/100", "1/200", "0")))
 """Such shares in strips."""
 NOISES = tuple(map(Fraction, ("0.002", "0.001", "0.0005", "0.0001", "0")))
@@ -57,18 +55,16 @@ def search(problem: Problem) -> Mapping[str, Stated]:
 def _in_cells(
     problem: Problem, law: Protection, friction: tuple[Parts, ...], effort: float
 ) -> dict[str, Any] | None:
-    """Find cells for the largest share of the ranges that the effort is enough for."""
-    if ways_in.speaks_about(problem):
-        return None
-    for share, least in zip(IN_CELLS, WORTH, strict=True):
+    """Find cells for the largest share of the ranges before the first one that the effort is not enough for."""
+    largest = None
+    for share in IN_CELLS if not ways_in.speaks_about(problem) else ():
         near = around(problem, share)
-        band = _band(near, law, friction) if effort >= least else None
-        if band is None:
-            continue
-        found = ways(near, share, asks_of(near, band), effort, problem)
-        if found is not None:
-            return ways_in.write(found, band)
-    return None
+        band = _band(near, law, friction)
+        found = None if band is None else ways(near, share, asks_of(near, band), effort)
+        if found is None or band is None:
+            break
+        largest = ways_in.write(found, band)
+    return largest
 
 
 def _band(problem: Problem, law: Protection, friction: tuple[Parts, ...]) -> dict[str, Any] | None:

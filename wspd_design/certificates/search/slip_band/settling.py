@@ -11,7 +11,7 @@ from wspd_design.certificates.theorems.slip_band.statement import law_of
 
 FIRST, LAST = 3, 120  # samples in time before the rows, and after them
 UNTIL = (21.0, 12.0)  # of what the pull falls by in a sample on the braking curve, where the rows end
-HALVED = ("", "v", "vti", "vtiu")  # at the end, the first that does
+HALVED = ("", "v", "ium", "vti")  # at the end, the first that does
 
 
 def plan_for(
@@ -19,12 +19,11 @@ def plan_for(
     numbers: Numbers,
     start: Start,
     asked: Sequence[Asked],
-    effort: float = float(len(HALVED)),
 ) -> tuple[Plan, Settled] | str:
     """Return how the wheels of a cell are followed and what that shows, or why they cannot be."""
     sigma, why = law_numbers(law_of(problem.controller)).sigma, ""
     for until in UNTIL:
-        for halved in HALVED[: max(1, int(effort))]:
+        for halved in HALVED:
             plan = Plan(FIRST, until * sigma, LAST, halved)
             try:
                 return plan, settles(problem, numbers, start, asked, plan)

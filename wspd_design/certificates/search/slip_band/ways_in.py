@@ -1,8 +1,10 @@
 """Search for groups and cells of the way from rolling into a band; nothing here is trusted."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import log
+from random import Random
 
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.settling import plan_for
@@ -23,133 +25,164 @@ from wspd_design.certificates.theorems.from_rolling.ways_in import (
 from wspd_design.certificates.theorems.slip_band.arrival import Asked
 from wspd_design.certificates.theorems.slip_band.statement import Cell
 
-TOLERANCES = dict(zip(ALL, (1.2, 0.8, 2.5, 1.0, 1.0, 0.45, 1.5, 0.7), strict=True))
-"""How wide cells can be, one range against another, over half of the stated ranges."""
-CELL = 0.25  # of that width, cells that are tried first
-SMALLEST = 0.05  # at which a cell is given up
-TRIED, HOLD = 24, 0.75  # cells that are tried before all are followed, and the part of them that has to hold
-MOST = 1_200  # cells that are followed, with an effort of 1
-UNTIL = 0.43, 0.6  # of the reference, slips at which cells end
+TOLERANCES = dict(zip(ALL, (0.48, 0.24, 0.19, 0.5, 0.3, 0.45, 1.5, 0.7), strict=True))
+"""Logarithms of the higher over the lower end of ranges that make cells about as hard to follow."""
+CELLS = 0.42, 0.3, 0.21, 0.15  # of that width, cells that may be tried first
+SMALLEST = 0.06  # at which a cell is given up
+TRIED, HOLD = 24, 0.5  # cells that are tried before others, and the part of them that has to hold
+DRAWN = 48  # cells that are drawn to guess how many there are
+MOST = 3_000  # cells that are followed, with an effort of 1
+UNTIL = 0.6, 0.75  # of the reference, slips at which cells end
 WAY = 0.9  # of the way of a whole sample, that wheels of a cell want at most when it ends
-GROUP = "vti"  # ranges of which groups are halves, where the box is one group too many
+FAILED = 4  # groups that may fail, with an effort of 1
+GROUP = "ususvtium"  # ranges that groups are halved by, one after the other
 
 
 @dataclass(slots=True)
-class Count:
-    """What may be spent."""
+class Search:
+    """What is sought, and what may be spent."""
 
-    effort: float
+    problem: Problem
+    asked: Sequence[tuple[Cell, Asked]]
+    until: float  # -, slip at which cells end
+    size: float  # of cells that are tried first
     left: int  # cells that may be followed yet
+    fails: int  # groups that may fail yet
 
 
 def ways(
-    problem: Problem, share: Fraction, asked: Sequence[tuple[Cell, Asked]], effort: float, whole: Problem
+    problem: Problem, share: Fraction, asked: Sequence[tuple[Cell, Asked]], effort: float
 ) -> Proof | None:
-    """Find a proof for a box, ``problem``, that has a share of the ranges of ``whole``; None if none was found."""
-    count = Count(effort, int(MOST * effort))
-    widths = [0.5 * (high - low) for low, high in (whole.span(name) for name in ALL)]
-    tried = max(1, int(effort))
-    for part in UNTIL[:tried]:
-        until = part * problem.slip
-        for letters in _prefixes(GROUP[: tried - 1]):
-            found = _grouped(problem, box_around(problem), letters, until, asked, widths, count)
-            if found is not None:
-                steps, groups = found
-                return Proof(share, until, steps, groups)
-            if count.left <= 0:
-                return None
+    """Find a proof for the box of a problem, which is a share of another one; None if none was found."""
+    most, box = int(MOST * effort), box_around(problem)
+    begins = _begins(problem, box)
+    if begins is None:
+        return None
+    search = Search(problem, asked, *begins, most, int(FAILED * effort))
+    if _drawn(search, box, DRAWN)[1] > most:
+        return None
+    found = _grouped(search, box, GROUP)
+    return None if found is None else Proof(share, search.until, *found)
+
+
+def _begins(problem: Problem, box: Box) -> tuple[float, float] | None:
+    """Where cells end, and how large those are that are tried first, of which most hold."""
+    for size in CELLS:
+        cells = _some(_divided(box, size), TRIED)
+        for part in UNTIL:
+            if len(_tight(problem, cells, part * problem.slip)) >= HOLD * len(cells):
+                return part * problem.slip, size
     return None
 
 
-def _prefixes(letters: str) -> Iterator[str]:
-    for k in range(len(letters) + 1):
-        yield letters[:k]
-
-
-def _grouped(
-    problem: Problem,
-    box: Box,
-    letters: str,
-    until: float,
-    asked: Sequence[tuple[Cell, Asked]],
-    widths: Sequence[float],
-    count: Count,
-) -> tuple[str, tuple[Group, ...]] | None:
-    """Divide a box into groups by some letters, and find cells and a plan for each."""
-    if letters:
-        parts = [
-            _grouped(problem, half, letters[1:], until, asked, widths, count)
-            for half in halves(box, letters[0])
-        ]
-        if any(each is None for each in parts):
-            return None
-        one, other = (each for each in parts if each is not None)
-        return letters[0] + one[0] + other[0], one[1] + other[1]
-    met = met_by(asked, box)
-    numbers = dict(zip(ALL, box, strict=True))
-    if not _promises(problem, box, until, widths, met, count.effort):
-        return None
-    found = _celled(problem, box, until, widths, count)
-    if found is None:
-        return None
-    steps, start = found
-    plan = plan_for(problem, numbers, start, met, count.effort)
-    return None if isinstance(plan, str) else (".", (Group(steps=steps, plan=plan[0]),))
-
-
-def _promises(
-    problem: Problem,
-    box: Box,
-    until: float,
-    widths: Sequence[float],
-    met: Sequence[Asked],
-    effort: float,
-) -> bool:
-    """Whether most of some cells hold, from all over a box, and their wheels come into the band."""
+def _divided(box: Box, size: float) -> list[Box]:
     todo, cells = [box], []
     while todo:
         here = todo.pop()
-        letter, size = _widest(here, widths)
-        if size > CELL:
+        letter, width = _widest(here)
+        if width > size:
             todo += halves(here, letter)[::-1]
         else:
             cells.append(here)
-    chosen = [cells[k * len(cells) // TRIED] for k in range(TRIED)] if len(cells) > TRIED else cells
-    found = [each[0] for each in caught_of(problem, chosen, until) if each is not None]
-    tight = [each for each in found if _is_tight(problem, each)]
-    if len(found) < HOLD * len(chosen) or not tight:
-        return False
-    return not isinstance(
-        plan_for(problem, dict(zip(ALL, box, strict=True)), together(tight), met, effort), str
-    )
+    return cells
 
 
-def _celled(
-    problem: Problem, box: Box, until: float, widths: Sequence[float], count: Count
-) -> tuple[str, Start] | None:
+def _some(cells: list[Box], count: int) -> list[Box]:
+    """Return some cells from all over a list."""
+    return [cells[k * len(cells) // count] for k in range(count)] if len(cells) > count else cells
+
+
+def _tight(problem: Problem, cells: Sequence[Box], until: float) -> list[Start]:
+    """What wheels have at the end, of those cells that hold."""
+    found = [each[0] for each in caught_of(problem, cells, until) if each is not None]
+    return [each for each in found if _is_tight(problem, each)]
+
+
+def _drawn(search: Search, box: Box, count: int) -> tuple[list[Start], float]:
+    """Follow cells that are drawn by halving a box until they hold; with a guess of how many cells there are."""
+    random, starts, total = Random(0), [], 0.0
+    todo = [(box, 1.0 / count)] * count
+    while todo:
+        drawn = []
+        for here, weight in todo:
+            letter, width = _widest(here)
+            while width > search.size:
+                here, weight = random.choice(halves(here, letter)), 2.0 * weight
+                letter, width = _widest(here)
+            drawn.append((here, weight))
+        todo = []
+        found = caught_of(search.problem, [here for here, _ in drawn], search.until)
+        for (here, weight), each in zip(drawn, found, strict=True):
+            letter, width = _widest(here)
+            if each is not None and _is_tight(search.problem, each[0]):
+                starts.append(each[0])
+                total += weight
+            elif width < SMALLEST:
+                return starts, float("inf")
+            else:
+                todo.append((random.choice(halves(here, letter)), 2.0 * weight))
+        if total + sum(weight for _, weight in todo) > 4.0 * search.left:
+            return starts, float("inf")
+    return starts, total
+
+
+def _grouped(search: Search, box: Box, letters: str) -> tuple[str, tuple[Group, ...]] | None:
+    """Divide a box into groups, and find cells and a plan for each; by some letters, where it is one group too many."""
+    found = _group(search, box)
+    if found is not None:
+        return ".", (found,)
+    search.fails -= 1
+    if not letters or search.left <= 0 or search.fails < 0:
+        return None
+    parts = []
+    for half in halves(box, letters[0]):
+        part = _grouped(search, half, letters[1:])
+        if part is None:
+            return None
+        parts.append(part)
+    (steps, groups), (others, more) = parts
+    return letters[0] + steps + others, groups + more
+
+
+def _group(search: Search, box: Box) -> Group | None:
+    """Find cells of a group and a plan for it: first for some of them, then for all."""
+    problem, met = search.problem, met_by(search.asked, box)
+    numbers = dict(zip(ALL, box, strict=True))
+    some, count = _drawn(search, box, TRIED)
+    if count > search.left or isinstance(plan_for(problem, numbers, together(some), met), str):
+        return None
+    found = _celled(search, box)
+    if found is None:
+        return None
+    steps, start = found
+    plan = plan_for(problem, numbers, start, met)
+    return None if isinstance(plan, str) else Group(steps=steps, plan=plan[0])
+
+
+def _celled(search: Search, box: Box) -> tuple[str, Start] | None:
     """Divide a box into cells that hold, the widest range first; with what their wheels have together."""
     tree: dict[str, str] = {}  # letter of each node that is halved, by its path
     todo = [("", box)]
     starts: list[Start] = []
     while todo:
-        if count.left <= 0:
+        if search.left <= 0:
             return None
         batch: list[tuple[str, Box]] = []
         while todo and len(batch) < AT_ONCE:
             path, here = todo.pop()
-            if _widest(here, widths)[1] > CELL:
-                todo += _halved(tree, path, here, widths)
+            if _widest(here)[1] > search.size:
+                todo += _halved(tree, path, here)
             else:
                 batch.append((path, here))
-        count.left -= len(batch)
-        found = caught_of(problem, [here for _, here in batch], until)
+        search.left -= len(batch)
+        found = caught_of(search.problem, [here for _, here in batch], search.until)
         for (path, here), each in zip(batch, found, strict=True):
-            if each is not None and _is_tight(problem, each[0]):
+            if each is not None and _is_tight(search.problem, each[0]):
                 starts.append(each[0])
-            elif _widest(here, widths)[1] < SMALLEST:
+            elif _widest(here)[1] < SMALLEST:
                 return None
             else:
-                todo += _halved(tree, path, here, widths)
+                todo += _halved(tree, path, here)
     return _written(tree, ""), together(starts)
 
 
@@ -165,19 +198,16 @@ def _is_tight(problem: Problem, start: Start) -> bool:
     )
 
 
-def _halved(tree: dict[str, str], path: str, box: Box, widths: Sequence[float]) -> list[tuple[str, Box]]:
-    letter = _widest(box, widths)[0]
+def _halved(tree: dict[str, str], path: str, box: Box) -> list[tuple[str, Box]]:
+    letter = _widest(box)[0]
     tree[path] = letter
     low, high = halves(box, letter)
     return [(path + "1", high), (path + "0", low)]
 
 
-def _widest(box: Box, widths: Sequence[float]) -> tuple[str, float]:
+def _widest(box: Box) -> tuple[str, float]:
     """Letter of the widest range for its tolerance, and that width."""
-    sizes = [
-        0.5 * (high - low) / width / TOLERANCES[name] if width else 0.0
-        for (low, high), width, name in zip(box, widths, ALL, strict=True)
-    ]
+    sizes = [log(high / low) / TOLERANCES[name] for (low, high), name in zip(box, ALL, strict=True)]
     k = max(range(len(sizes)), key=lambda i: sizes[i])
     return EVERY[k], sizes[k]
 

@@ -4,6 +4,7 @@ See :mod:`sample` for the map; what the friction does within a sample is bounded
 """
 
 from dataclasses import dataclass
+from math import exp
 
 import numpy as np
 
@@ -21,10 +22,15 @@ from wspd_design.certificates.theorems.from_rolling.sample import (
 )
 from wspd_design.certificates.theorems.from_rolling.support import Array, Polytope
 
-SPARES = 6  # trials of what the friction adds to the change of the error within two samples
+SPARES = 12  # trials of what the friction adds to the change of the error within two samples
 NONE = Between(0.0, 0.0)
+HALF = (
+    0.07,
+    0.53,
+)  # of a rate, that a mean over two samples has of what it adds until their middle and from there on
 MORE = 1.03  # times rho, that a valve goes of a way at most
-SLOWER = 0.3  # m/s, that a train may lose within the samples that a bound speaks about
+FARTHER = 0.1  # rad/s, that a wheel may fall behind in a sample beside y
+SLOWER = 0.8  # m/s, that a train may lose within the samples that a bound speaks about
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +41,7 @@ class State:
     error: Between  # e [rad/s]
     speed: Between  # m/s
     room: float  # rad/s, at the first sample
+    left: float  # rad/s, of the room now at least, by what was filled since
     begun: float  # rad/s, y at the first sample at least
     risen: float  # rad/s, by which the friction rose since then at most
     supply: float  # -, at least
@@ -55,6 +62,7 @@ class Sample:
     falling: Between  # y [rad/s]
     errors: Between  # of the wheel speed, E [rad/s]
     next_error: Between  # e of the next sample
+    left: float  # rad/s, of the room in the next sample at least
     added: float  # what a rising supply adds to what is filled at most, over it
     way: Between  # rad/s, that the valve may go in the next sample
     reach: Between  # rad/s, that the error falls by within a sample, at least and at most
@@ -107,6 +115,11 @@ def sample_of(law: LawNumbers, wheels: Wheels, state: State, farther: float) -> 
         state.room
         - ((1.0 + wheels.share.high) * state.risen + falling.high - state.begun) / wheels.effect.low
     )
+    # The torque is what holds friction and drag, and makes the wheel fall behind.
+    ahead_of = Between(min(falling.low, 0.0) - FARTHER, max(falling.high, 0.0) + FARTHER)
+    now = wheels.friction(wheels.slip - (errors - ahead_of) * wheels.radius / state.speed, state.speed, 0.0)
+    seen = now.seen.high + (now.falls.high + falling.high) / wheels.effect.low
+    room = max(room, state.left, wheels.full * state.supply - seen)
     if room <= 0.0:
         raise Refused("there may be no room in the supply")
     added = 0.52 * rise / room
@@ -116,10 +129,26 @@ def sample_of(law: LawNumbers, wheels: Wheels, state: State, farther: float) -> 
     then = gone + Between(-gone.size, gone.size) * farther
     twice = (wheels.effect * (gone + then)).union(NONE)
     mean = (wheels.effect * (gone + 0.5 * then)).union(NONE)
-    moves, slip, friction, spare = _within_two(wheels, state, errors, falling + twice)
+    moves, slip, friction, rises = _within_two(wheels, state, errors, falling, twice)
+    if moves.low < ahead_of.low or moves.high > ahead_of.high:
+        raise Refused("a wheel may move farther in a sample than is assumed")
     slope, drag = friction.slope, friction.drag_change
     slides = friction.falls * (wheels.slip - slip) / (1.0 - wheels.slip)  # w
-    beside = slope * (mean + Between(-spare, spare) - slides) + Between(0.0, friction.fading)
+    # What the friction rises by slows the wheel down, as the weights of the mean count it: half of it at most.
+    more = 1.0 + wheels.share.high
+    spare = Between(
+        -more * (HALF[1] * rises.high - HALF[0] * rises.low),
+        more * (HALF[0] * rises.high - HALF[1] * rises.low),
+    ) + Between(-1.0, 1.0) * (2.0 * drag.size)
+    beside = slope * (mean + spare - slides) + Between(0.0, friction.fading)
+    if (
+        falling.low + twice.low + spare.low - slides.high
+        < 0.0
+        < falling.high + twice.high + spare.high - slides.low
+    ):
+        # A wheel that turns round within the samples may have another slope on the way back.
+        apart = 0.25 * (slope.high - slope.low) * (twice.high - twice.low + spare.high - spare.low)
+        beside += Between(-apart, apart)
     torque = friction.seen.low + min(falling.low / wheels.effect.low, falling.low / wheels.effect.high)
     if torque <= 0.0:
         raise Refused("there may be no torque to be vented")
@@ -143,6 +172,7 @@ def sample_of(law: LawNumbers, wheels: Wheels, state: State, farther: float) -> 
         falling=falling,
         errors=errors,
         next_error=law.kept * state.error + wheels.share * change + drag,
+        left=max(room - gone.high, room * exp(-law.over_fill * wheels.fills.high) * (1.0 - 1e-12)),
         added=added,
         way=then,
         reach=moves,
@@ -151,22 +181,33 @@ def sample_of(law: LawNumbers, wheels: Wheels, state: State, farther: float) -> 
 
 
 def _within_two(
-    wheels: Wheels, state: State, errors: Between, falls: Between
-) -> tuple[Between, Between, Friction, float]:
-    """Bound what the error falls by in this sample as in the next, the slip, the friction, and what that adds to it."""
-    speed, spare = Between(state.speed.low - SLOWER, state.speed.high), 0.0
+    wheels: Wheels, state: State, errors: Between, falling: Between, twice: Between
+) -> tuple[Between, Between, Friction, Between]:
+    """Bound what the error falls by in this sample as in the next, the slip, the friction, and its rate in between."""
+    speed, spare, back = Between(state.speed.low - SLOWER, state.speed.high), NONE, -np.inf
+    more, falls = 1.0 + wheels.share.high, falling + twice
     for _ in range(SPARES):
-        moves = Between(min(falls.low - spare, 0.0), max(falls.high + spare, 0.0))
+        moves = Between(min(max(falls.low + spare.low, back), 0.0), max(falls.high + spare.high, 0.0))
         turned = Between(errors.low - 2.0 * moves.high, errors.high - 2.0 * moves.low)
         slip = wheels.slip - turned * wheels.radius / speed
         friction = wheels.friction(slip, speed, moves.size)
-        changes = 2.0 * friction.slope.size * moves.size + 2.0 * friction.fading
-        left = (1.0 + wheels.share.high) * changes + 2.0 * friction.drag_change.size
+        slides = friction.falls * (wheels.slip - slip) / (1.0 - wheels.slip)
+        rates = friction.slope * (moves - slides)
+        rises = Between(min(rates.low, 0.0), max(rates.high, 0.0) + friction.fading)
+        # The mean of a sample differs by half of that from either end, and by one and a half from the end of the next.
+        aside = 2.0 * friction.drag_change.size
+        left = Between(
+            -more * (1.5 * rises.high - 0.5 * rises.low) - aside,
+            more * (0.5 * rises.high - 1.5 * rises.low) + aside,
+        )
+        # A wheel that slides on is turned back by what is vented alone: friction only holds it.
+        turns = 1.3 * (2.0 * more * friction.fading + aside - twice.low)
+        next_back = -turns if falling.low > slides.high and friction.slope.low > -0.05 else -np.inf
         if not 4.0 * friction.loss.high <= SLOWER:
             raise Refused("a train may lose more speed in a sample than is assumed")
-        if left <= spare:
-            return moves, slip, friction, spare
-        spare = 1.2 * left
+        if spare.low <= left.low and left.high <= spare.high and back <= next_back:
+            return moves, slip, friction, rises
+        spare, back = 1.2 * left, 1.2 * next_back
     raise Refused("the friction may change without bound within two samples")
 
 

@@ -44,8 +44,9 @@ from wspd_design.certificates.theorems.slip_band.statement import LETTERS, NAMES
 Numbers: TypeAlias = Mapping[str, tuple[float, float]]
 """Ranges of the eight numbers of a cell."""
 
-IN_TIME = directions(1, (1.0, 2.0, 2.0, 1.0))
-IN_ROWS = np.vstack([PULL, np.pad(directions(2, (2.0, 2.0, 1.0)), ((0, 0), (1, 0)))])
+FALLING = np.array([1.0, 1.0, 0.8, -1.0])  # about y, for an observer as fast as is usual
+IN_TIME = np.vstack([directions(1, (1.0, 2.0, 2.0, 1.0)), FALLING, FALLING - PULL])
+IN_ROWS = np.vstack([PULL, np.pad(directions(2, (2.0, 2.0, 1.0)), ((0, 0), (1, 0))), FALLING - PULL])
 FARTHER = (0.02, 0.1, 0.3, 0.8)  # of what the valve may go in a sample, that it may go more in the next one
 TRIALS, GROWTH = 60, (0.3, 1.0)  # of a row, and by how much more than needed it grows at first, and later
 ROOMY = 1.002  # of the width of a row over the largest fall
@@ -96,6 +97,7 @@ def _after(sample: Sample, states: Polytope) -> State:
         risen=state.risen + sample.rises,
         top=max(state.top, sample.farthest),
         samples=state.samples + 1.0,
+        left=sample.left,
         supply=_supply(sample.wheels, state, 1.0),
     )
 
@@ -148,6 +150,7 @@ def begun(law: LawNumbers, wheels: Wheels, start: Start) -> State:
         error=start.error,
         speed=start.speed,
         room=start.room,
+        left=start.room,
         begun=y,
         risen=0.0,
         supply=start.supply,
@@ -210,6 +213,7 @@ def through_rows(
     law: LawNumbers, wheels: Wheels, state: State, until: float, rows: list[Sample] | None = None
 ) -> State:
     """Follow the pull down through rows until it is below a value in all wheels; what a row holds goes to ``rows``."""
+    state = replace(state, left=-np.inf)  # the valves fill and vent many times
     ends = state.states.ends(IN_ROWS)
     begins = Row(ends[:, 0], ends[:, 1], state.error)
     (lowest, top), row = map(float, ends[0]), begins
@@ -223,6 +227,7 @@ def through_rows(
                 states=Polytope(IN_ROWS, *_with_pull(row, top - fastest, top)),
                 error=row.error,
                 samples=state.samples + 1.0,
+                left=-np.inf,
             )
         sample, row, image_of, width, rises = _row(
             law, wheels, state, row, begins if lowest < top else None, (top, width, rises)
@@ -332,8 +337,8 @@ def settles(
     for sample in in_time(law, wheels, state, plan.first):
         state = sample.state
     state = through_rows(law, wheels, state, plan.until)
-    parts = [wheels_of(problem, exact, part) for part in _halves(numbers, plan.halved)]
-    return reduce(_either, (_settled(law, part, state, asked, plan.last) for part in parts))
+    parts = [(wheels_of(problem, exact, part), part) for part in _halves(numbers, plan.halved)]
+    return reduce(_either, (_settled(law, *part, state, asked, plan.last) for part in parts))
 
 
 def _halves(numbers: Numbers, letters: str) -> list[Numbers]:
@@ -362,10 +367,12 @@ def _either(one: Settled, other: Settled) -> Settled:
     )
 
 
-def _settled(law: LawNumbers, wheels: Wheels, state: State, asked: Sequence[Asked], count: int) -> Settled:
+def _settled(
+    law: LawNumbers, wheels: Wheels, numbers: Numbers, state: State, asked: Sequence[Asked], count: int
+) -> Settled:
     """Follow wheels in time until they are in all ellipsoids, or refuse it."""
     for sample in in_time(law, wheels, state, count):
-        if all(arrived(sample, each) for each in asked):
+        if arrived(sample, asked, numbers):
             return Settled(
                 slip=max(sample.state.top, sample.farthest),
                 speed=sample.state.speed.low,

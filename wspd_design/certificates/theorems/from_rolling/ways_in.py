@@ -332,7 +332,7 @@ def caught_of(problem: Problem, cells: Sequence[Box], until: float) -> "list[tup
                 error=between("error", k),
                 way=between("way", k),
                 slip=Between(*found.slip),
-                speed=Between(float(found.speed[k]), fastest),
+                speed=Between(float(found.speed.low[k]), float(found.speed.high[k])),
                 room=float(found.states["room"].low[k]),
                 supply=float(found.supply[k]),
             ),

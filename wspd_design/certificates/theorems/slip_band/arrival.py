@@ -1,6 +1,6 @@
 """Whether wheels that come from rolling are in the ellipsoid of a band: the state of the way in, in its coordinates."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +9,7 @@ from wspd_design.certificates.kernel.affine import Affine, Array
 from wspd_design.certificates.theorems.slip_band.followed_law import known_acceleration, observed_friction
 from wspd_design.certificates.theorems.slip_band.followed_plant import Plant, State
 from wspd_design.certificates.theorems.slip_band.motion import rates
+from wspd_design.certificates.theorems.slip_band.statement import Cell
 from wspd_design.controllers.protection import Protection
 
 INWARD = 1e-6  # by which an ellipsoid is made smaller, so that rounding of its root does not count
@@ -23,6 +24,8 @@ class Asked(NamedTuple):
     center: Sequence[float]  # c [rad/s]
     moved: Sequence[float]  # by how much the center is elsewhere at either end of the steady drift [rad/s]
     supply: float  # -, of the full pressure, at least
+    closer: Callable[[Cell, tuple[float, float]], tuple[list[float], list[float]]] | None = None
+    """Center and by how much it is elsewhere, for a part of the cell and of the speeds [m/s]."""
 
 
 def arrived(law: Protection, plant: Plant, state: State, asked: Asked) -> Array:

@@ -144,19 +144,33 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
     }
 
 
-def _loop(problem: Problem, law: BandLaw, found: Proof, at: tuple[Cell, int], each: Ellipsoid) -> Loop:
-    """Work out the loop of an ellipsoid in a cell and a window."""
+def _loop(
+    problem: Problem,
+    law: BandLaw,
+    found: Proof,
+    at: tuple[Cell, int],
+    each: Ellipsoid,
+    speeds: tuple[float, float] | None = None,
+) -> Loop:
+    """Work out the loop of an ellipsoid in a cell and a window, or at some of its speeds."""
     cell, k = at
     conditions = Conditions(each.supply, found.delay, found.noise, found.reserve)
-    return loop_of(problem, law, cell, windows_of(problem)[k], found.friction[k], each.choice, conditions)
+    window = windows_of(problem)[k] if speeds is None else speeds
+    return loop_of(problem, law, cell, window, found.friction[k], each.choice, conditions)
 
 
-def steady_of(problem: Problem, found: Proof, at: tuple[Cell, int], each: Ellipsoid) -> Steady:
-    """Return the steady drift of the torque that an ellipsoid in a cell and a window is about."""
+def steady_of(
+    problem: Problem,
+    found: Proof,
+    at: tuple[Cell, int],
+    each: Ellipsoid,
+    speeds: tuple[float, float] | None = None,
+) -> Steady:
+    """Return the steady drift of the torque that an ellipsoid is about, in a cell and a window or a part of them."""
     from flint import ctx
 
     with ctx.workprec(DIGITS):
-        return _loop(problem, law_of(problem.controller), found, at, each).steady
+        return _loop(problem, law_of(problem.controller), found, at, each, speeds).steady
 
 
 def holds_more(

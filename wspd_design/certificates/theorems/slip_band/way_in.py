@@ -9,17 +9,20 @@ side by side and cover the supply rates of a row; the slower the supply, the nar
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache, partial
 from itertools import pairwise
 from math import exp
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from wspd_design.certificates.kernel.arb import above, point
+from wspd_design.certificates.kernel.arb import above, below, point
 from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
 from wspd_design.certificates.theorems.slip_band.checker import inverse, steady_of
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION, SLOPES
+from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
+from wspd_design.certificates.theorems.slip_band.proof import Proof as BandProof
 from wspd_design.certificates.theorems.slip_band.proof import read as read_band
 from wspd_design.certificates.theorems.slip_band.statement import (
     NAMES,
@@ -222,38 +225,60 @@ def around(problem: Problem, share: Fraction = LARGEST_SHARE) -> Problem:
 
 
 def asks_of(problem: Problem, proof: Mapping[str, Any]) -> "list[tuple[Cell, Asked]]":
-    """Return what each cell of an accepted proof of a band asks for at the highest speeds."""
+    """Return what each cell of an accepted proof of a band asks for in each window of speed, the fastest one first."""
     from wspd_design.certificates.theorems.slip_band.arrival import Asked
 
     windows = windows_of(problem)
     found, asks = read_band(proof, len(windows)), []
     cells = cells_of(box_of(problem, found.share), found.steps)
-    for cell, ellipsoids in zip(cells, found.cells, strict=True):
-        begin = ellipsoids[-1]
-        assert begin is not None  # without a reserve no window is left out
-        steady = steady_of(problem, found, (cell, len(windows) - 1), begin)
-        away = above(steady.away(point(begin.drift)))
-        asked = Asked(
-            speeds=windows[-1],
-            settled=float(begin.settled),
-            matrix=inverse(begin.matrix),
-            center=[float(each) for each in begin.center],
-            moved=[float(each) * away for each in begin.moves],
-            supply=float(begin.supply),
-        )
-        asks.append((cell, asked))
+    for k in reversed(range(len(windows))):
+        for cell, ellipsoids in zip(cells, found.cells, strict=True):
+            each, at = ellipsoids[k], (cell, k)
+            assert each is not None  # without a reserve no window is left out
+            away = above(steady_of(problem, found, at, each).away(point(each.drift)))
+            asked = Asked(
+                speeds=windows[k],
+                settled=float(each.settled),
+                matrix=inverse(each.matrix),
+                center=[float(end) for end in each.center],
+                moved=[float(end) * away for end in each.moves],
+                supply=float(each.supply),
+                closer=cache(partial(_closer, problem, found, at, each)),
+            )
+            asks.append((cell, asked))
     if found.share != 1:
         raise Refused("the band must be that of the whole box")
     return asks
 
 
+def _closer(
+    problem: Problem,
+    found: BandProof,
+    at: tuple[Cell, int],
+    begin: Ellipsoid,
+    numbers: Cell,
+    speeds: tuple[float, float],
+) -> tuple[list[float], list[float]]:
+    """Return the center of an ellipsoid for the middle of the steady drifts of some numbers, and its way to an end."""
+    (cell, k), drift = at, float(begin.drift)
+    part = tuple(
+        (max(one, low), min(other, high)) for (one, other), (low, high) in zip(numbers, cell, strict=True)
+    )
+    steady = steady_of(problem, found, (part, k), begin, speeds)
+    low, high = below(steady.low), above(steady.high)
+    middle, half = 0.5 * (low + high) - drift, 0.5 * (high - low) * (1.0 + 1e-9)
+    center = [
+        float(each) + float(move) * middle for each, move in zip(begin.center, begin.moves, strict=True)
+    ]
+    return center, [float(each) * half for each in begin.moves]
+
+
 def asked_of(problem: Problem, proof: Mapping[str, Any]) -> "Asked":
     """Return what an accepted proof of a band asks for at the highest speeds, or refuse a band of more than a cell."""
     asks = asks_of(problem, proof)
-    if len(asks) != 1:
+    if len(asks) != len(windows_of(problem)):
         raise Refused("the band must be that of one cell, which is the whole box")
-    ((_, asked),) = asks
-    return asked
+    return asks[0][1]
 
 
 def supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, speed: float) -> None:
