@@ -26,7 +26,7 @@ from tests.certificates.band.test_passing import (
 )
 from wspd_design.certificates.kernel.interval import Interval
 from wspd_design.certificates.theorems.from_rolling import cells as cells_module
-from wspd_design.certificates.theorems.from_rolling import filling, passing
+from wspd_design.certificates.theorems.from_rolling import filling, passing, sample
 from wspd_design.certificates.theorems.from_rolling.cells import gathered, sliding
 
 
@@ -119,12 +119,12 @@ def test_what_comes_while_the_valve_vents_is_within_bounds(coming, share):
     """A torque that is less at once, by a share of what would stop the wheel."""
     within, rail = coming
     course, of, count = dense(rail), filled_wheels(rail), 0
-    for sample in range(4, 40, 3):
-        now = sample * PARTS
+    for begin in range(4, 40, 3):
+        now = begin * PARTS
         good = course.here[now + PARTS] & (course.motion[now] > 0.0)
         vents = share * np.maximum(course.motion[now], 0.0) / of.effect
         state = np.array([course.slip[now], course.speed[now]])
-        f = run(of, state, float(sample), 1, vents)["f"]
+        f = run(of, state, float(begin), 1, vents)["f"]
         ahead = means(f)[0] - f[0]
         for vent in np.unique(np.ceil(vents[good] * 100.0)) / 100.0:
             bound, here = within(vent), good & (vents <= vent) & (vents > vent - 0.01)
@@ -306,8 +306,8 @@ def test_cells_of_which_nothing_is_known_are_lost(few):
 
 def test_cells_that_fill_to_the_end_are_lost(few, monkeypatch):
     """An error as large as that of a wheel that rolls, at all slips."""
-    pulls = filling._pulls
-    monkeypatch.setattr(filling, "_pulls", lambda law, seen: pulls(law, seen) + 5.0)
+    pulls = sample.pulls
+    monkeypatch.setattr(filling, "pulls", lambda law, seen: pulls(law, seen) + 5.0)
     assert lost(few).all()
 
 
@@ -315,7 +315,7 @@ def test_pulls_are_those_of_the_law():
     law = from_rolling.law(WET)
     seen = np.linspace(-0.5, 6.0, 50)
     expected = [law.pull(each) for each in seen]
-    np.testing.assert_allclose(filling._pulls(law, seen), expected, atol=1e-14)
+    np.testing.assert_allclose(sample.pulls(law, seen), expected, atol=1e-14)
 
 
 # --- the friction over slip and speed --------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ docs/theory.md#all-ways-in for the map.
 
 from collections import defaultdict
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,7 +28,7 @@ from wspd_design.certificates.theorems.from_rolling.boxes import (
 from wspd_design.certificates.theorems.from_rolling.cells import Cells, Sliding, sliding
 from wspd_design.certificates.theorems.from_rolling.filling import Filled
 from wspd_design.certificates.theorems.from_rolling.passing import EDGES, FLOOR, SINK
-from wspd_design.certificates.theorems.from_rolling.sample import LawNumbers
+from wspd_design.certificates.theorems.from_rolling.sample import LawNumbers, pulls
 from wspd_design.certificates.theorems.from_rolling.valve import Part, Valve, corners
 
 WIDTH, GROWS, GRAIN = 4e-4, 0.03, 1e-5  # of a row: at most, and over the slip
@@ -553,11 +554,8 @@ class _Way:
 
 
 def _pull(law: LawNumbers, seen: Interval) -> Interval:
-    def pull(x: Array) -> Array:
-        curve = np.sqrt(np.maximum(2.0 * law.sigma * (x - 0.5 * law.begins), 0.0))
-        return np.where(x > law.begins, curve, law.gain * x)
-
-    return seen.rising(pull)
+    """Pull at predicted errors."""
+    return seen.rising(partial(pulls, law))
 
 
 def _steepness(law: LawNumbers, seen: Interval) -> Interval:

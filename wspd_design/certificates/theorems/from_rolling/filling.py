@@ -25,7 +25,7 @@ from wspd_design.certificates.theorems.from_rolling.passing import (
     rooms_of,
     steepest,
 )
-from wspd_design.certificates.theorems.from_rolling.sample import LawNumbers
+from wspd_design.certificates.theorems.from_rolling.sample import LawNumbers, pulls
 from wspd_design.certificates.theorems.from_rolling.supply import SPARE
 
 VENTS = 1.1  # times what the law wants to be vented, that a valve takes off in it at most
@@ -132,7 +132,7 @@ def _filled(law: LawNumbers, cells: Cells, passing: Passing, assumed: Interval) 
         asked = asked.at_least(known - at_error.high)  # x - P
         errors = (cells.one.slip - Interval(EDGES[:-1], EDGES[1:])) * passing.speed / wheels.radius
         seen = errors + law.ahead * asked
-        way = Interval(_pulls(law, seen.low), _pulls(law, seen.high)) + asked
+        way = Interval(pulls(law, seen.low), pulls(law, seen.high)) + asked
         vents = VENTS * np.maximum(wheels.vents.high, 1.0) * np.maximum(-way.low, 0.0)
         coming = _coming(passing, windows, steep, fading, vents)
         fall = there.slides + motion - (1.0 + wheels.share) * coming
@@ -280,9 +280,3 @@ def _coming(passing: Passing, windows: Windows, steep: Array, fading: Array, ven
         moved.low, 0.0
     )  # of one that turns round where the friction falls
     return Interval(0.5 * rises.low, 0.5 * (most + back))
-
-
-def _pulls(law: LawNumbers, seen: Array) -> Array:
-    """Pull at predicted errors."""
-    curve = np.sqrt(np.maximum(2.0 * law.sigma * (seen - 0.5 * law.begins), 0.0))
-    return np.where(seen > law.begins, curve, law.gain * seen)

@@ -98,6 +98,13 @@ def law_numbers(law: BandLaw) -> LawNumbers:
     )
 
 
+def pulls(law: LawNumbers, seen: Array) -> Array:
+    """Pulls at many predicted errors, of either sign."""
+    curve = np.sqrt(np.maximum(2.0 * law.sigma * (seen - 0.5 * law.begins), 0.0))
+    found: Array = np.where(seen > law.begins, curve, law.gain * seen)
+    return found
+
+
 class Pulse(NamedTuple):
     """Ways within a range, and what the valve makes of them."""
 
