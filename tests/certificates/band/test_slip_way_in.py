@@ -139,7 +139,6 @@ def stop():
     nominal = replace(problem, bounds=type(problem.bounds).of(ends), speeds=(80.0 / 3.6, problem.speeds[1]))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(slip_way_in, "IN_CELLS", ())
-        patch.setattr(slip_way_in, "WORTH", ())
         patch.setattr(search, "HALVES", (0.02,))
         patch.setattr(search, "ROWS", 1)
         (found,) = suite.verify(nominal, only=["slip_way_in"], figures=False)
