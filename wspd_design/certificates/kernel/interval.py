@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 Where: TypeAlias = NDArray[np.bool_]
+Index: TypeAlias = NDArray[np.int_]
 Number: TypeAlias = "Interval | Array | float"
 
 ROUNDING = 2.5e-16  # relative, more than half a unit in the last place

@@ -4,11 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from wspd_design.certificates.kernel.interval import Array, Interval, Where
-
-Index = NDArray[np.int_]
+from wspd_design.certificates.kernel.interval import Array, Index, Interval, Where
 
 STATES = ("y", "z", "p", "error", "way", "room")
 Y, WAY = STATES.index("y"), STATES.index("way")

@@ -15,12 +15,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wspd_design.certificates.kernel.interval import Array, Interval, Where
+from wspd_design.certificates.kernel.interval import Array, Index, Interval, Where
 from wspd_design.certificates.theorems.from_rolling.boxes import (
     LEAST,
     STATES,
     Boxes,
-    Index,
     joined,
     sliced,
     together,
@@ -93,12 +92,17 @@ class _Way:
         self.rate = np.zeros(count)
         # S q is no more where wheels are caught first; later its own bound holds.
         self.level = np.where(filled.alive, filled.steep, 0.0).max(axis=1)
-        column, shape = cells.at((slice(None), None)), (count, self.edges.size - 1)
+        shape = count, self.edges.size - 1
         self.slip = Interval(np.broadcast_to(self.edges[:-1], shape), np.broadcast_to(self.edges[1:], shape))
         self.speed = Interval(np.full(count, LEAST_SPEED * fastest), np.full(count, fastest))
-        self.there = sliding(column, self.slip, self.speed.column())
-        self.torque = (1.0 + column.share) * self.there.friction + self.there.drag
+        self.there, self.torque = self._bounds(slice(None))
         self.gains = self._gains(self.there)
+
+    def _bounds(self, part: slice) -> tuple[Sliding, Interval]:
+        """Bound the friction in some rows, and the torque that holds it and the drag."""
+        column = self.cells.at((slice(None), None))
+        there = sliding(column, self.slip[:, part], self.speed.column())
+        return there, (1.0 + column.share) * there.friction + there.drag
 
     def _gains(self, t: Sliding) -> Array:
         """By what S q rises beyond what the torque makes it, before it falls again, while S is large enough."""
@@ -132,9 +136,7 @@ class _Way:
             slow - LINGER * self.there.loss.high[:, part].max(axis=1), LEAST_SPEED * self.fastest
         )
         self.speed = Interval(np.where(known, slow, self.speed.low), np.where(known, fast, self.speed.high))
-        column = self.cells.at((slice(None), None))
-        there = sliding(column, self.slip[:, part], self.speed.column())
-        torque = (1.0 + column.share) * there.friction + there.drag
+        there, torque = self._bounds(part)
         refined: list[tuple[Any, Any]] = [*zip(self.there, there, strict=True), (self.torque, torque)]
         for old, new in refined:
             for one, other in (
@@ -206,19 +208,11 @@ class _Way:
         )
         g, steep = self.cells.effect[cell], self._steepest(row)[cell]
         change = filled.rate[cell, parts].max(axis=1)
-        unlike = (
-            np.maximum(
-                g.high * 0.51
-                - 0.4 * law.nominal * law.over_fill / (law.over_fill * self.cells.fills[cell].high),
-                0.0,
-            )
-            * change
-        )
-        known = (1.0 - law.kept) * error - law.a * (z + p * (1.0 / law.theta))
-        known = Interval(known.low - law.a * unlike, known.high)
+        unlike = np.maximum(g.high * 0.51 - 0.4 * law.nominal / self.cells.fills[cell].high, 0.0) * change
+        known = ((1.0 - law.kept) * error - law.a * (z + p * (1.0 / law.theta))).low - law.a * unlike
         beside = z + p * ((1.0 - law.theta) / law.theta) - error
         least = law.fills * room - change * (1.0 + steep * (0.51 * g.high + law.ahead))
-        least = least + np.minimum(known.low, 0.0) * (1.0 + steep * law.ahead)
+        least = least + np.minimum(known, 0.0) * (1.0 + steep * law.ahead)
         motion = np.where(filled.alive, filled.motion, 0.0)[cell, : parts.stop].max(axis=1)
         way = self.cells.radius.high[cell] / self.speed.low[cell] * motion
         self.lost[cell[way > 0.5 * self.edges[row]]] = True

@@ -113,8 +113,8 @@ def _filled(law: LawNumbers, cells: Cells, passing: Passing, assumed: Interval) 
         - 0.5 * drag
     )
 
-    def wanted(cut: Array) -> tuple[Interval, Interval, Interval, Interval, Interval, Interval]:
-        """What is learned if no more than something was cut off, and with it y, x - P and x."""
+    def learned_of(cut: Array) -> tuple[Interval, Interval, Interval, Interval]:
+        """Return z, p and e at an instant, and x - P, if no more than something was cut off."""
         at, p, at_error = _learned(
             law,
             windows,
@@ -130,23 +130,23 @@ def _filled(law: LawNumbers, cells: Cells, passing: Passing, assumed: Interval) 
         # What comes in the next sample has no part in what is wanted.
         asked = at + beta * p - at_error - (there.slides + motion + Interval(0.0, there.eases))
         asked = asked.at_least(known - at_error.high)  # x - P
-        errors = (cells.one.slip - Interval(EDGES[:-1], EDGES[1:])) * passing.speed / wheels.radius
-        seen = errors + law.ahead * asked
-        way = Interval(pulls(law, seen.low), pulls(law, seen.high)) + asked
-        vents = VENTS * np.maximum(wheels.vents.high, 1.0) * np.maximum(-way.low, 0.0)
-        coming = _coming(passing, windows, steep, fading, vents)
-        fall = there.slides + motion - (1.0 + wheels.share) * coming
-        fall = Interval(np.maximum(fall.low, 0.0), fall.high + there.eases)
-        return at - coming, p, at_error + wheels.share * coming, fall, asked, way
+        return at, p, at_error, asked
 
     cut = _cut(passing, unlike.high)
-    asked = wanted(0.0 * cut)[4]
+    *_, asked = learned_of(0.0 * cut)
     observed = passing.torque.low + asked.low - np.maximum.accumulate(there.falls.high, axis=1)
     enough = observed > (1.0 - theta) / theta * cut
-    first = np.where(
-        enough.all(axis=1), 0, parts - np.argmin(enough[:, ::-1], axis=1)
-    )  # nothing is cut from here on
-    z, p, error, fall, _, way = wanted(np.where(windows.far < first[:, None], cut, 0.0))
+    # From this part on nothing is cut.
+    first = np.where(enough.all(axis=1), 0, parts - np.argmin(enough[:, ::-1], axis=1))
+    at, p, at_error, asked = learned_of(np.where(windows.far < first[:, None], cut, 0.0))
+    errors = (cells.one.slip - Interval(EDGES[:-1], EDGES[1:])) * passing.speed / wheels.radius
+    seen = errors + law.ahead * asked
+    way = Interval(pulls(law, seen.low), pulls(law, seen.high)) + asked
+    vents = VENTS * np.maximum(wheels.vents.high, 1.0) * np.maximum(-way.low, 0.0)
+    coming = _coming(passing, windows, steep, fading, vents)
+    z, error = at - coming, at_error + wheels.share * coming
+    fall = there.slides + motion - (1.0 + wheels.share) * coming
+    fall = Interval(np.maximum(fall.low, 0.0), fall.high + there.eases)
     whole = law.fills * rooms
     alive = way.high >= whole.low
     ended = parts - np.argmax(alive[:, ::-1], axis=1)
@@ -276,7 +276,6 @@ def _coming(passing: Passing, windows: Windows, steep: Array, fading: Array, ven
     # Friction that rises slows a wheel down to rest and no further.
     moved = Interval(np.maximum(motion.low - slower, 0.0) - g * vents, 1.1 * (motion.high + g * passing.rate))
     rises = over(slope, windows.own, last) * moved
-    back = np.minimum(slope.low, 0.0) * np.minimum(
-        moved.low, 0.0
-    )  # of one that turns round where the friction falls
+    # One that turns round where the friction falls gains some as well.
+    back = np.minimum(slope.low, 0.0) * np.minimum(moved.low, 0.0)
     return Interval(0.5 * rises.low, 0.5 * (most + back))

@@ -11,14 +11,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from wspd_design.certificates.kernel.interval import Array, Interval
+from wspd_design.certificates.kernel.interval import Array, Index, Interval
 from wspd_design.certificates.theorems.from_rolling.cells import Cells, Sliding, sliding
 from wspd_design.certificates.theorems.from_rolling.sample import LawNumbers
 from wspd_design.certificates.theorems.from_rolling.supply import SPARE, Filling
-
-Index = NDArray[np.int_]
 
 SINK = 1e-4  # slip below 0 that a wheel that rolls does not exceed
 FIRST, GROWS, GRAIN, STRIDE, LAST = 2e-5, 1.02, 8e-6, 7e-4, 0.125  # parts of the slip, narrow ones first

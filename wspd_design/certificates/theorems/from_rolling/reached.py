@@ -32,10 +32,8 @@ def arrived(sample: "Sample", asked: Sequence[Asked], numbers: Mapping[str, tupl
     ((_, highest),) = state.states.ends(PULL[None])
     if highest > law.gain * law.begins:
         return False
-    slow, fast = (
-        state.speed.low - 2.0 * sample.friction.loss.high,
-        state.speed.high,
-    )  # in this sample and the next
+    # In this sample and the next.
+    slow, fast = state.speed.low - 2.0 * sample.friction.loss.high, state.speed.high
     met = [each for each in asked if each.speeds[0] <= fast and slow <= each.speeds[1]]
     return _cover([each.speeds for each in met], slow, fast) and all(
         _is_in(sample, each, numbers, (slow, fast)) for each in met

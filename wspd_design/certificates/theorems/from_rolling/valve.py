@@ -30,7 +30,7 @@ class Valve:
     def __init__(
         self, law: LawNumbers, cells: Cells, room: Interval, rise: Interval, torque: Interval
     ) -> None:
-        self.law, self.cells, self.room, self.rise = law, cells, room, rise
+        self.law, self.room, self.rise = law, room, rise
         self.over = cells.fills * law.over_fill, cells.vents * law.over_fill
         # The rise over the room; what is left of the room after a sample, from a supply that only rises.
         left = room.low * np.exp(-self.over[0].high) * (1.0 - 1e-12)
