@@ -226,29 +226,33 @@ def around(problem: Problem, share: Fraction = LARGEST_SHARE) -> Problem:
 
 def asks_of(problem: Problem, proof: Mapping[str, Any]) -> "list[tuple[Cell, Asked]]":
     """Return what each cell of an accepted proof of a band asks for in each window of speed, the fastest one first."""
-    from wspd_design.certificates.theorems.slip_band.arrival import Asked
-
-    windows = windows_of(problem)
-    found, asks = read_band(proof, len(windows)), []
-    cells = cells_of(box_of(problem, found.share), found.steps)
-    for k in reversed(range(len(windows))):
-        for cell, ellipsoids in zip(cells, found.cells, strict=True):
-            each, at = ellipsoids[k], (cell, k)
-            assert each is not None  # without a reserve no window is left out
-            away = above(steady_of(problem, found, at, each).away(point(each.drift)))
-            asked = Asked(
-                speeds=windows[k],
-                settled=float(each.settled),
-                matrix=inverse(each.matrix),
-                center=[float(end) for end in each.center],
-                moved=[float(end) * away for end in each.moves],
-                supply=float(each.supply),
-                closer=cache(partial(_closer, problem, found, at, each)),
-            )
-            asks.append((cell, asked))
+    windows = range(len(windows_of(problem)))
+    found = read_band(proof, len(windows))
     if found.share != 1:
         raise Refused("the band must be that of the whole box")
-    return asks
+    cells = cells_of(box_of(problem, found.share), found.steps)
+    return [
+        (cell, _asked(problem, found, (cell, k), ellipsoids[k]))
+        for k in reversed(windows)
+        for cell, ellipsoids in zip(cells, found.cells, strict=True)
+    ]
+
+
+def _asked(problem: Problem, found: BandProof, at: tuple[Cell, int], each: Ellipsoid | None) -> "Asked":
+    """Return what an ellipsoid of a cell and a window asks for."""
+    from wspd_design.certificates.theorems.slip_band.arrival import Asked
+
+    assert each is not None  # without a reserve no window is left out
+    away = above(steady_of(problem, found, at, each).away(point(each.drift)))
+    return Asked(
+        speeds=windows_of(problem)[at[1]],
+        settled=float(each.settled),
+        matrix=inverse(each.matrix),
+        center=[float(end) for end in each.center],
+        moved=[float(end) * away for end in each.moves],
+        supply=float(each.supply),
+        closer=cache(partial(_closer, problem, found, at, each)),
+    )
 
 
 def _closer(
@@ -275,10 +279,12 @@ def _closer(
 
 def asked_of(problem: Problem, proof: Mapping[str, Any]) -> "Asked":
     """Return what an accepted proof of a band asks for at the highest speeds, or refuse a band of more than a cell."""
-    asks = asks_of(problem, proof)
-    if len(asks) != len(windows_of(problem)):
+    last = len(windows_of(problem)) - 1
+    found = read_band(proof, last + 1)
+    if found.share != 1 or len(found.cells) != 1:
         raise Refused("the band must be that of one cell, which is the whole box")
-    return asks[0][1]
+    (cell,) = cells_of(box_of(problem, found.share), found.steps)
+    return _asked(problem, found, (cell, last), found.cells[0][last])
 
 
 def supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, speed: float) -> None:
